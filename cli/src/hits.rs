@@ -1,0 +1,104 @@
+//! [`HitRecord`]: the answer to a ray as hit files hold it.
+//!
+//! Per ray a little-endian f32 t and a u32 primitive (8 bytes); a miss is t = infinity and
+//! primitive = 0xffffffff.
+
+use std::path::Path;
+
+use crate::input::{self, InputError};
+use crate::output::{OutputError, write_atomically};
+
+/// A hit or a miss.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HitRecord {
+    /// Where on the ray, in lengths of its direction.
+    pub t: f32,
+    /// The triangle, counted from 0 in the mesh file's order.
+    pub primitive: u32,
+}
+
+impl HitRecord {
+    /// The ray hits nothing.
+    pub const MISS: HitRecord = HitRecord {
+        t: f32::INFINITY,
+        primitive: u32::MAX,
+    };
+
+    /// Whether the ray hits nothing.
+    pub fn is_miss(self) -> bool {
+        self.primitive == u32::MAX
+    }
+}
+
+/// Reads a hit file; `-` is standard input.
+pub fn read_hits(path: &Path) -> Result<Vec<HitRecord>, InputError> {
+    let bytes = input::read_records(path, 8, "hit")?;
+    let hits = bytes.chunks_exact(8).map(|b| HitRecord {
+        t: f32::from_le_bytes([b[0], b[1], b[2], b[3]]),
+        primitive: u32::from_le_bytes([b[4], b[5], b[6], b[7]]),
+    });
+    Ok(hits.collect())
+}
+
+/// Writes a hit file; `-` is standard output.
+pub fn write_hits(path: &Path, hits: &[HitRecord]) -> Result<(), OutputError> {
+    write_atomically(path, |file| {
+        hits.iter().try_for_each(|hit| {
+            file.write_all(&hit.t.to_le_bytes())?;
+            file.write_all(&hit.primitive.to_le_bytes())
+        })
+    })
+}
+
+/// Writes the hits as lines `ray,t,primitive`, the last two empty for a miss; `-` is standard output.
+pub fn write_csv(path: &Path, hits: &[HitRecord]) -> Result<(), OutputError> {
+    write_atomically(path, |file| {
+        writeln!(file, "ray,t,primitive")?;
+        hits.iter()
+            .enumerate()
+            .try_for_each(|(ray, hit)| match hit.is_miss() {
+                true => writeln!(file, "{ray},,"),
+                // The shortest text that reads back to the same f32.
+                false => writeln!(file, "{ray},{},{}", hit.t, hit.primitive),
+            })
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const HITS: [HitRecord; 2] = [
+        HitRecord {
+            t: 0.1,
+            primitive: 7,
+        },
+        HitRecord::MISS,
+    ];
+
+    #[test]
+    fn hits_read_back() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("hits");
+        write_hits(&path, &HITS).unwrap();
+        assert_eq!(read_hits(&path).unwrap(), HITS);
+        std::fs::write(&path, [0; 9]).unwrap();
+        let error = read_hits(&path).unwrap_err().to_string();
+        assert!(error.contains("9 bytes are not a whole number of hits of 8 bytes, 1 are left"));
+        let missing = read_hits(&folder.path().join("none"))
+            .unwrap_err()
+            .to_string();
+        assert!(missing.ends_with("none: no such file: check the path"));
+    }
+
+    #[test]
+    fn a_miss_is_empty_in_csv() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("hits.csv");
+        write_csv(&path, &HITS).unwrap();
+        assert_eq!(
+            std::fs::read_to_string(&path).unwrap(),
+            "ray,t,primitive\n0,0.1,7\n1,,\n"
+        );
+    }
+}

@@ -1,0 +1,471 @@
+//! The builder: one skeleton, depth first, without recursion.
+//!
+//! The words it is given are used from both ends:
+//!
+//! ```text
+//! | header | stream: nodes, each leaf's references behind it → | free | ← items of pending cells | tasks |
+//! ```
+//!
+//! A cell's items lie on top of those of the cells that wait. Dividing it writes the right child's items in place, the
+//! left child's on top, and leaves a task for the right child. At the end the stream is sorted into nodes and references.
+
+use core::mem::size_of;
+
+use super::{
+    HEADER_WORDS, MAX_DEPTH,
+    node::{Kind, MAX_LINK, Node},
+    open::Header,
+    options::{Options, Split},
+    reference_bytes,
+    split::{Item, Place, Plane, choose},
+};
+use crate::{
+    arena::Full,
+    error::BuildError,
+    geometry::Aabb,
+    math,
+    primitives::{Primitives, bounds_of},
+};
+
+const ITEM_WORDS: usize = size_of::<Item>() / 4;
+const TASK_WORDS: usize = size_of::<Task>() / 4;
+
+/// Each level leaves at most one task behind.
+const TASKS: usize = MAX_DEPTH + 1;
+
+/// No node.
+const NONE: u32 = u32::MAX;
+
+/// A cell that waits to be divided.
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+struct Task {
+    cell: Aabb,
+    /// Its first item, counted from the end of the items.
+    top: u32,
+    count: u32,
+    depth: u32,
+    /// Half-words that its subtree may take.
+    budget: u32,
+    /// Where in the stream the node stands whose right child it is.
+    parent: u32,
+}
+
+/// See [`KdTree::words`](super::KdTree::words).
+pub(super) const fn words(primitives: usize, options: &Options) -> usize {
+    // In the stream a reference takes a word, of which the budget may have counted half.
+    let stream = options.bytes(primitives) / 2;
+    (HEADER_WORDS + TASKS * TASK_WORDS + Node::WORDS)
+        .saturating_add(stream)
+        .saturating_add(most_items(primitives).saturating_mul(ITEM_WORDS))
+}
+
+/// Items that may be pending at a time: cells become leaves where there would be more.
+const fn most_items(primitives: usize) -> usize {
+    primitives.saturating_mul(2).saturating_add(32)
+}
+
+/// Writes a tree over `primitives` to the front of `words`; how many it took.
+pub(super) fn build<P: Primitives + ?Sized>(
+    primitives: &P,
+    words: &mut [u32],
+    options: &Options,
+) -> Result<usize, BuildError> {
+    let count = primitives.len();
+    if count > MAX_LINK {
+        return Err(BuildError::TooMany { limit: MAX_LINK });
+    }
+    let allowed = options.bytes(count as usize);
+    let at_least = super::least_bytes(count as usize);
+    if allowed < at_least {
+        return Err(BuildError::Budget { at_least, allowed });
+    }
+    let bounds = bounds_of(primitives).map_err(|primitive| BuildError::Bounds { primitive })?;
+    let mut attempt = |options: &Options| Builder::new(primitives, words, options, bounds)?.run();
+
+    let built = attempt(options)?;
+    if options.max_bytes.is_none() || !built.cut_short {
+        return Ok(built.words);
+    }
+    if options.split != Split::Sah {
+        return Ok(built.words);
+    }
+    // The greatest intersection cost at which no cell had to become a leaf for want of bytes.
+    let (mut fits, mut exceeds) = (options.intersection_cost / 256.0, options.intersection_cost);
+    for _ in 0..7 {
+        let cost = math::sqrt(fits * exceeds);
+        let cut_short = attempt(&Options { intersection_cost: cost, ..*options })?.cut_short;
+        *(if cut_short { &mut exceeds } else { &mut fits }) = cost;
+    }
+    Ok(attempt(&Options { intersection_cost: fits, ..*options })?.words)
+}
+
+/// What an attempt came to.
+struct Built {
+    words: usize,
+    /// Whether a cell became a leaf because its children would have exceeded the budget.
+    cut_short: bool,
+}
+
+struct Builder<'w, 'p, P: ?Sized> {
+    primitives: &'p P,
+    options: &'p Options,
+    bounds: Aabb,
+    max_depth: u32,
+    /// Half-words per reference.
+    reference_size: u32,
+
+    /// Stream and items.
+    words: &'w mut [u32],
+    tasks: &'w mut [Task],
+    task_count: usize,
+    /// Words of stream.
+    used: usize,
+    /// Items of pending cells, without those of the cell at hand.
+    top: usize,
+
+    nodes: u32,
+    references: u32,
+    depth: u32,
+    /// Half-words that finished cells left over.
+    spare: u32,
+    cut_short: bool,
+}
+
+impl<'w, 'p, P: Primitives + ?Sized> Builder<'w, 'p, P> {
+    fn new(primitives: &'p P, words: &'w mut [u32], options: &'p Options, bounds: Aabb) -> Result<Self, Full> {
+        let available = words.len();
+        let items = primitives.len() as usize * ITEM_WORDS;
+        let at_least = HEADER_WORDS + TASKS * TASK_WORDS + Node::WORDS + items;
+        let full = Full { at_least, available };
+        let body = available.checked_sub(TASKS * TASK_WORDS).filter(|_| available >= at_least).ok_or(full)?;
+        let (words, tasks) = words.split_at_mut_checked(body).ok_or(full)?;
+        let max_depth = options.depth(primitives.len());
+        let reference_size = reference_bytes(primitives.len() as usize) as u32 / 2;
+        Ok(Self {
+            primitives,
+            options,
+            bounds,
+            max_depth,
+            reference_size,
+            words,
+            tasks: bytemuck::try_cast_slice_mut(tasks).map_err(|_| full)?,
+            task_count: 0,
+            used: HEADER_WORDS,
+            top: 0,
+            nodes: 0,
+            references: 0,
+            depth: 0,
+            spare: 0,
+            cut_short: false,
+        })
+    }
+
+    fn run(mut self) -> Result<Built, BuildError> {
+        let mut task = self.root()?;
+        loop {
+            task.budget = task.budget.saturating_add(core::mem::take(&mut self.spare));
+            self.link(&task);
+            task = match self.divide(&task)? {
+                Some(left) => left,
+                None => {
+                    self.leaf(&task)?;
+                    let Some(right) = self.task_count.checked_sub(1).and_then(|last| self.tasks.get(last)) else {
+                        break;
+                    };
+                    self.task_count -= 1;
+                    *right
+                }
+            };
+        }
+        let words = self.finish()?;
+        Ok(Built { words, cut_short: self.cut_short })
+    }
+
+    /// The cell of all primitives.
+    fn root(&mut self) -> Result<Task, Full> {
+        let count = self.primitives.len();
+        self.top = count as usize;
+        self.reserve(0)?;
+        let primitives = self.primitives;
+        let (_, items) = self.parts();
+        let first = items.len().saturating_sub(count as usize);
+        for (primitive, item) in items.iter_mut().skip(first).enumerate() {
+            let primitive = primitive as u32;
+            *item = Item { bounds: primitives.bounds(primitive), primitive };
+        }
+        let header = HEADER_WORDS * 4;
+        let bytes = self.options.bytes(count as usize).saturating_sub(header);
+        let budget = u32::try_from(bytes / 2).unwrap_or(u32::MAX);
+        Ok(Task { cell: self.bounds, top: count, count, depth: 0, budget, parent: NONE })
+    }
+
+    /// The stream, and all that may hold items, those on top of the stack first.
+    fn parts(&mut self) -> (&mut [u32], &mut [Item]) {
+        let (stream, free) = self.words.split_at_mut_checked(self.used).unwrap_or_default();
+        let ragged = free.len() % ITEM_WORDS;
+        let items = free.split_at_mut_checked(ragged).map(|(_, items)| items).unwrap_or_default();
+        (stream, bytemuck::try_cast_slice_mut(items).unwrap_or_default())
+    }
+
+    /// The items of a cell.
+    fn items(&mut self, task: &Task) -> &mut [Item] {
+        let (_, items) = self.parts();
+        let first = items.len().saturating_sub(task.top as usize);
+        items.get_mut(first..first.saturating_add(task.count as usize)).unwrap_or_default()
+    }
+
+    /// Makes sure that `words` can be added to the stream.
+    fn reserve(&self, words: usize) -> Result<(), Full> {
+        let needed = self.used + words + self.top * ITEM_WORDS;
+        if needed <= self.words.len() {
+            return Ok(());
+        }
+        let tasks = TASKS * TASK_WORDS;
+        Err(Full { at_least: needed + tasks, available: self.words.len() + tasks })
+    }
+
+    /// Adds words to the stream; the room was reserved.
+    fn append(&mut self, word: u32) {
+        if let Some(place) = self.words.get_mut(self.used) {
+            *place = word;
+            self.used += 1;
+        }
+    }
+
+    /// Tells the parent of a right child its number.
+    fn link(&mut self, task: &Task) {
+        let number = self.nodes;
+        let place = self.words.get_mut(task.parent as usize..).and_then(|stream| stream.first_chunk_mut::<2>());
+        if let Some(words) = place {
+            *words = Node::from_words(*words).linked_to(number).to_words();
+        }
+    }
+
+    /// Half-words of a leaf of `count` primitives.
+    fn leaf_size(&self, count: usize) -> u32 {
+        let references = if count > 1 { (count as u32).saturating_mul(self.reference_size) } else { 0 };
+        references.saturating_add(Node::WORDS as u32 * 2)
+    }
+
+    /// Writes an inner node, distributes the items and leaves a task for the right child; the left child's task, or none
+    /// if the cell is to be a leaf.
+    fn divide(&mut self, task: &Task) -> Result<Option<Task>, BuildError> {
+        self.top = task.top as usize;
+        if task.count <= self.options.leaf_size || task.depth >= self.max_depth {
+            return Ok(None);
+        }
+        let options = self.options;
+        let items = self.items(task);
+        let Some(plane) = choose(items, &task.cell, options) else { return Ok(None) };
+
+        // Sort: left, both, right.
+        let (mut left, mut both_end, mut right) = (0, 0, items.len());
+        while both_end < right {
+            let Some(item) = items.get(both_end) else { break };
+            match plane.place(&item.bounds) {
+                Place::Left => {
+                    swap(items, left, both_end);
+                    left += 1;
+                    both_end += 1;
+                }
+                Place::Both => both_end += 1,
+                Place::Right => {
+                    right -= 1;
+                    swap(items, both_end, right);
+                }
+            }
+        }
+        let both = both_end - left;
+        let (most_left, most_right) = (left + both, items.len() - left);
+        // Without the heuristic, a plane that all items cross would be followed by more of its kind.
+        if both == items.len() && task.count > 1 && options.split != Split::Sah {
+            return Ok(None);
+        }
+        let least = self.leaf_size(most_left).saturating_add(self.leaf_size(most_right)).saturating_add(4);
+        let crowded = task.top as usize + both > most_items(self.primitives.len() as usize);
+        let Some(excess) = task.budget.checked_sub(least).filter(|_| !crowded) else {
+            self.cut_short = true;
+            return Ok(None);
+        };
+
+        // The copies of those on both sides lie on top of the cell's items.
+        self.top = task.top as usize + both;
+        self.reserve(Node::WORDS)?;
+        let (left_count, right_count) = self.distribute(task, &plane, left, both);
+
+        let (left_cell, right_cell) = task.cell.split(plane.axis, plane.position);
+        let weight = (most_left + most_right).max(1) as u64;
+        let share = (u64::from(excess) * most_left as u64 / weight) as u32;
+        let right = Task {
+            cell: right_cell,
+            // The right child's items end where the cell's did.
+            top: (task.top as usize - task.count as usize + right_count) as u32,
+            count: right_count as u32,
+            depth: task.depth + 1,
+            budget: self.leaf_size(most_right).saturating_add(excess - share),
+            parent: self.used as u32,
+        };
+        if let Some(place) = self.tasks.get_mut(self.task_count) {
+            *place = right;
+            self.task_count += 1;
+        }
+        self.node(Node::inner(plane.axis, plane.position))?;
+        self.depth = self.depth.max(task.depth + 1);
+        Ok(Some(Task {
+            cell: left_cell,
+            // The left child's items begin behind those of the right.
+            top: (task.top as usize - left + left_count) as u32,
+            count: left_count as u32,
+            depth: task.depth + 1,
+            budget: self.leaf_size(most_left) + share,
+            parent: NONE,
+        }))
+    }
+
+    /// Turns the items on both sides, which lie behind the `left` ones, into parts: the left ones on top of all, the right
+    /// ones against those of the right. How many there are on each side.
+    fn distribute(&mut self, task: &Task, plane: &Plane, left: usize, both: usize) -> (usize, usize) {
+        let (left_cell, right_cell) = task.cell.split(plane.axis, plane.position);
+        let (primitives, clip) = (self.primitives, self.options.clip);
+        let part = |item: &Item, cell: &Aabb| {
+            let clipped = if clip && primitives.is_certified(item.primitive) {
+                primitives.clip(item.primitive, cell)?.intersection(&item.bounds)
+            } else {
+                item.bounds.intersection(cell)
+            };
+            (!clipped.is_empty()).then_some(Item { bounds: clipped, ..*item })
+        };
+        let (_, items) = self.parts();
+        let first = items.len().saturating_sub(task.top as usize);
+        let right_only = task.count as usize - left - both;
+        let (mut left_count, mut right_count) = (left, right_only);
+        for index in (0..both).rev() {
+            let Some(item) = items.get(first + left + index).copied() else { continue };
+            if let Some(part) = part(&item, &right_cell)
+                && let Some(place) = items.get_mut(first + task.count as usize - right_count - 1)
+            {
+                *place = part;
+                right_count += 1;
+            }
+            if let Some(part) = part(&item, &left_cell)
+                && let Some(place) = items.get_mut((first + left).wrapping_sub(left_count + 1))
+            {
+                *place = part;
+                left_count += 1;
+            }
+        }
+        (left_count, right_count)
+    }
+
+    /// Adds a node to the stream.
+    fn node(&mut self, node: Node) -> Result<(), BuildError> {
+        if self.nodes >= MAX_LINK || self.used >= NONE as usize {
+            return Err(BuildError::TooMany { limit: MAX_LINK });
+        }
+        node.to_words().into_iter().for_each(|word| self.append(word));
+        self.nodes += 1;
+        Ok(())
+    }
+
+    /// Writes a leaf of the cell's items and takes them off the stack.
+    fn leaf(&mut self, task: &Task) -> Result<(), BuildError> {
+        let count = task.count;
+        let size = self.leaf_size(count as usize);
+        self.spare = task.budget.saturating_sub(size);
+        if count <= 1 {
+            let primitive = self.items(task).first().map_or(0, |item| item.primitive);
+            self.top = (task.top - count) as usize;
+            self.reserve(Node::WORDS)?;
+            return self.node(Node::leaf(primitive, count));
+        }
+        let first = self.references;
+        self.references = first.checked_add(count).ok_or(BuildError::TooMany { limit: u32::MAX })?;
+        // The node stands where an item was at the most; read before they are overwritten.
+        self.top = task.top as usize;
+        self.reserve(Node::WORDS + count as usize)?;
+        self.node(Node::leaf(first, count))?;
+        for index in 0..count {
+            let rest = Task { top: task.top - index, count: 1, ..*task };
+            let primitive = self.items(&rest).first().map_or(0, |item| item.primitive);
+            self.append(primitive);
+        }
+        self.top = (task.top - count) as usize;
+        Ok(())
+    }
+
+    /// Sorts the stream into nodes and references behind the header; the length of all.
+    fn finish(&mut self) -> Result<usize, BuildError> {
+        let narrow = self.reference_size == 1;
+        let packed = if narrow { self.references.div_ceil(2) } else { self.references } as usize;
+        self.top = 0;
+        self.reserve(packed)?;
+        // References to the far end, nodes together: these move forward only.
+        let shelf = self.words.len() - packed;
+        if let Some(shelf) = self.words.get_mut(shelf..) {
+            shelf.fill(0);
+        }
+        let (mut read, mut write, mut reference) = (HEADER_WORDS, HEADER_WORDS, 0);
+        for _ in 0..self.nodes {
+            let node = [self.word(read), self.word(read + 1)];
+            read += Node::WORDS;
+            for word in node {
+                self.set(write, word);
+                write += 1;
+            }
+            if let Kind::Leaf { count, .. } = Node::from_words(node).kind()
+                && count > 1
+            {
+                for _ in 0..count {
+                    let primitive = self.word(read);
+                    read += 1;
+                    if narrow {
+                        let place = shelf + reference / 2;
+                        self.set(place, self.word(place) | primitive << (16 * (reference % 2)));
+                    } else {
+                        self.set(shelf + reference, primitive);
+                    }
+                    reference += 1;
+                }
+            }
+        }
+        for index in 0..packed {
+            self.set(write + index, self.word(shelf + index));
+        }
+        let header = Header {
+            nodes: self.nodes,
+            references: self.references,
+            primitives: self.primitives.len(),
+            depth: self.depth,
+            bounds: self.bounds,
+        };
+        for (index, word) in header.to_words().into_iter().enumerate() {
+            self.set(index, word);
+        }
+        Ok(write + packed)
+    }
+
+    fn word(&self, index: usize) -> u32 {
+        self.words.get(index).copied().unwrap_or(0)
+    }
+
+    fn set(&mut self, index: usize, word: u32) {
+        if let Some(place) = self.words.get_mut(index) {
+            *place = word;
+        }
+    }
+}
+
+/// As `slice::swap`, but without a panic for the linker to keep.
+fn swap(items: &mut [Item], i: usize, j: usize) {
+    if i != j
+        && let (Some(&a), Some(&b)) = (items.get(i), items.get(j))
+    {
+        if let Some(place) = items.get_mut(i) {
+            *place = b;
+        }
+        if let Some(place) = items.get_mut(j) {
+            *place = a;
+        }
+    }
+}

@@ -1,0 +1,176 @@
+//! The kD-tree: space halved by planes, in nodes of 8 bytes.
+//!
+//! Built top-down by one skeleton with three ways to [`Split`]; the surface area heuristic with clipped ("perfect")
+//! splits after Wald and Havran, *On building fast kd-trees for ray tracing, and on doing that in O(N log N)*, 2006, by
+//! bins where there are many primitives and exactly where there are few. A [`KdTree`] is made by [`KdTree::build`] or
+//! checked by [`KdTree::open`]; after either, no walk can leave its words or fail to end.
+
+mod build;
+mod node;
+mod open;
+mod options;
+mod split;
+mod traverse;
+
+pub use open::{KdTreeError, Reason};
+pub use options::{Options, Split};
+pub use traverse::KdTraversal;
+
+use self::node::{Kind, Node};
+use super::{Accelerator, leaf::References};
+use crate::{
+    arena::Arena,
+    error::BuildError,
+    geometry::{Aabb, PreparedRay},
+    primitives::Primitives,
+};
+
+/// The greatest depth of a tree, and the height of a walk's stack: 384 bytes.
+///
+/// The depth rule reaches it at 360,000 primitives.
+pub const MAX_DEPTH: usize = 32;
+
+/// Words before the nodes: counts and bounds.
+const HEADER_WORDS: usize = 10;
+
+/// A kD-tree in borrowed words.
+///
+/// ```
+/// use hitscan::{Arena, KdTree, Mesh, Ray, Scene, glam::Vec3, kdtree::Options};
+/// let vertices = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
+/// let mesh = Mesh::new(&vertices, &[[0_u16, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]])?;
+/// let mut memory = vec![0; KdTree::words(4, &Options::fast())];
+/// let tree = KdTree::build(&mesh, &mut Arena::new(&mut memory), &Options::fast())?;
+/// let scene = Scene::new(tree, &mesh)?;
+/// let hit = scene.closest_hit(&Ray::new(Vec3::ONE, Vec3::NEG_ONE)).unwrap();
+/// assert_eq!(hit.primitive, 3);
+/// # Ok::<(), hitscan::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct KdTree<'a> {
+    words: &'a [u32],
+    nodes: &'a [Node],
+    references: References<'a>,
+    reference_count: u32,
+    primitives: u32,
+    depth: u32,
+    bounds: Aabb,
+}
+
+/// The bytes of a tree of one leaf.
+const fn least_bytes(primitives: usize) -> usize {
+    (HEADER_WORDS + Node::WORDS) * 4 + primitives.saturating_mul(reference_bytes(primitives))
+}
+
+/// The bytes of a reference: two where they suffice.
+const fn reference_bytes(primitives: usize) -> usize {
+    if primitives <= 1 << 16 { 2 } else { 4 }
+}
+
+impl<'a> KdTree<'a> {
+    /// Builds a tree over `primitives` in the free words of `arena`, of which it keeps only the tree.
+    ///
+    /// O(n log n) time. Neither recursion nor heap; all scratch is in the arena, and [`words`](Self::words) always
+    /// suffice. The same primitives and options give the same words on every target.
+    ///
+    /// # Errors
+    ///
+    /// [`BuildError::Full`] if the arena is too small, [`BuildError::Bounds`] if a primitive has no valid bounds,
+    /// [`BuildError::Budget`] if not even a single leaf fits into [`Options::max_bytes`], [`BuildError::TooMany`] above
+    /// 2^30 primitives. The arena is then as it was.
+    pub fn build<P: Primitives + ?Sized>(
+        primitives: &P,
+        arena: &mut Arena<'a>,
+        options: &Options,
+    ) -> Result<Self, BuildError> {
+        let words = arena.build(|words| build::build(primitives, words, options))?;
+        // What was just built needs no check of every node.
+        Ok(Self::view(words).unwrap_or(Self::NOTHING))
+    }
+
+    /// Words of arena that always suffice to build a tree over `primitives`, scratch included.
+    #[must_use]
+    pub const fn words(primitives: usize, options: &Options) -> usize {
+        build::words(primitives, options)
+    }
+
+    /// A tree over no primitives.
+    const NOTHING: Self = Self {
+        words: &[],
+        nodes: &[],
+        references: References::None,
+        reference_count: 0,
+        primitives: 0,
+        depth: 0,
+        bounds: Aabb::EMPTY,
+    };
+
+    /// The tree as words: what a file, flash, a GPU or a message holds.
+    #[must_use]
+    pub const fn as_words(&self) -> &'a [u32] {
+        self.words
+    }
+
+    /// How many nodes it has.
+    #[must_use]
+    pub const fn node_count(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// How many references its leaves hold, those of one primitive left out: they stand in the node.
+    #[must_use]
+    pub const fn reference_count(&self) -> usize {
+        self.reference_count as usize
+    }
+
+    /// The number of planes above its deepest leaf.
+    #[must_use]
+    pub const fn depth(&self) -> u32 {
+        self.depth
+    }
+
+    /// The work that the surface area heuristic expects of a ray through the bounds: nodes and primitive tests.
+    ///
+    /// Nothing is expected to be hit, so real rays do less.
+    #[must_use]
+    pub fn expected_work(&self) -> (f32, f32) {
+        let mut stack: heapless::Vec<(u32, Aabb), MAX_DEPTH> = heapless::Vec::new();
+        let whole = self.bounds.half_area();
+        let (mut nodes, mut tests) = (0.0, 0.0);
+        let mut next = Some((0, self.bounds));
+        while let Some((index, cell)) = next {
+            let chance = if whole > 0.0 { cell.half_area() / whole } else { 1.0 };
+            nodes += chance;
+            next = match self.nodes.get(index as usize).map(|node| node.kind()) {
+                Some(Kind::Inner { axis, position, right }) => {
+                    let (left_cell, right_cell) = cell.split(axis, position);
+                    let _ = stack.push((right, right_cell));
+                    Some((index + 1, left_cell))
+                }
+                Some(Kind::Leaf { count, .. }) => {
+                    tests += chance * count as f32;
+                    stack.pop()
+                }
+                None => None,
+            };
+        }
+        (nodes, tests)
+    }
+}
+
+impl<'a> Accelerator for KdTree<'a> {
+    type Traversal = KdTraversal<'a>;
+
+    fn primitives(&self) -> u32 {
+        self.primitives
+    }
+
+    fn bounds(&self) -> Aabb {
+        self.bounds
+    }
+
+    #[inline]
+    fn traverse(&self, ray: &PreparedRay) -> KdTraversal<'a> {
+        KdTraversal::new(self, ray)
+    }
+}

@@ -1,0 +1,88 @@
+use crate::geometry::Axis;
+
+/// A node of 8 bytes, after Pharr, Jakob and Humphreys, *Physically Based Rendering*, §4.4.
+///
+/// | | payload | link, upper 30 bits | link, lower 2 bits |
+/// |---|---|---|---|
+/// | inner node | position of the plane (`f32`) | number of the right child; the left one follows | axis 0, 1, 2 |
+/// | leaf of one | the primitive | 1 | 3 |
+/// | other leaf | index of the first reference | how many | 3 |
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+pub(crate) struct Node {
+    payload: u32,
+    link: u32,
+}
+
+/// What a node says.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Kind {
+    /// A plane between the next node and `right`.
+    Inner { axis: Axis, position: f32, right: u32 },
+    /// Primitives.
+    Leaf { first: u32, count: u32 },
+}
+
+/// The greatest number that a link holds.
+pub(crate) const MAX_LINK: u32 = (1 << 30) - 1;
+
+impl Node {
+    /// Words per node.
+    pub(crate) const WORDS: usize = 2;
+
+    /// A plane; the right child's number is set by [`linked_to`](Self::linked_to).
+    pub(crate) const fn inner(axis: Axis, position: f32) -> Self {
+        Self { payload: position.to_bits(), link: axis as u32 }
+    }
+
+    /// The same plane with its right child.
+    pub(crate) const fn linked_to(self, right: u32) -> Self {
+        Self { link: right << 2 | self.link & 3, ..self }
+    }
+
+    /// A leaf.
+    pub(crate) const fn leaf(first: u32, count: u32) -> Self {
+        Self { payload: first, link: count << 2 | 3 }
+    }
+
+    #[inline(always)]
+    pub(crate) const fn kind(self) -> Kind {
+        let number = self.link >> 2;
+        let axis = match self.link & 3 {
+            0 => Axis::X,
+            1 => Axis::Y,
+            2 => Axis::Z,
+            _ => return Kind::Leaf { first: self.payload, count: number },
+        };
+        Kind::Inner { axis, position: f32::from_bits(self.payload), right: number }
+    }
+
+    /// The two words.
+    pub(crate) const fn to_words(self) -> [u32; 2] {
+        [self.payload, self.link]
+    }
+
+    /// The node in two words.
+    pub(crate) const fn from_words([payload, link]: [u32; 2]) -> Self {
+        Self { payload, link }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn links_hold_30_bits_beside_the_axis() {
+        for number in [0, 1, MAX_LINK] {
+            for axis in Axis::ALL {
+                let node = Node::from_words(Node::inner(axis, -1.5).linked_to(number).to_words());
+                assert!(
+                    matches!(node.kind(), Kind::Inner { axis: a, position: -1.5, right } if a == axis && right == number)
+                );
+            }
+            let leaf = Node::leaf(u32::MAX, number);
+            assert!(matches!(leaf.kind(), Kind::Leaf { first: u32::MAX, count } if count == number));
+        }
+    }
+}

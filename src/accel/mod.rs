@@ -1,0 +1,54 @@
+//! Acceleration structures: which primitives a ray may hit, in the order of its way.
+//!
+//! A structure is a small `Copy` view of words. It answers a ray with a [`Traversal`], a cursor that yields leaves; the
+//! queries of [`Scene`](crate::Scene) are short shells over it, written once for all structures.
+
+pub mod kdtree;
+mod leaf;
+mod list;
+
+pub use kdtree::KdTree;
+pub use leaf::Leaf;
+pub use list::List;
+
+use crate::geometry::{Aabb, PreparedRay};
+
+/// A structure over numbered boxes.
+pub trait Accelerator {
+    /// The cursor that walks it.
+    type Traversal: Traversal;
+
+    /// How many primitives it was built over.
+    fn primitives(&self) -> u32;
+
+    /// The box around all of them.
+    fn bounds(&self) -> Aabb;
+
+    /// A cursor at the beginning of `ray`, which all later calls must repeat.
+    fn traverse(&self, ray: &PreparedRay) -> Self::Traversal;
+}
+
+/// A walk along a ray: a state machine that can stop at any leaf, or any node, and go on later.
+pub trait Traversal {
+    /// The numbers of the primitives in a leaf.
+    type Leaf: Iterator<Item = u32>;
+
+    /// The next leaf that the ray may enter at or before `t_max`, which must not grow from call to call.
+    ///
+    /// Each primitive that the ray meets at or before `t_max` is in one of the leaves; it may be in several.
+    fn next_leaf(&mut self, ray: &PreparedRay, t_max: f32) -> Option<Self::Leaf>;
+
+    /// As [`next_leaf`](Self::next_leaf), but visits at most `budget` nodes, which it counts down.
+    fn step(&mut self, ray: &PreparedRay, t_max: f32, budget: &mut u32) -> Step<Self::Leaf>;
+}
+
+/// What a bounded walk came to.
+#[derive(Clone, Copy, Debug)]
+pub enum Step<L> {
+    /// A leaf.
+    Leaf(L),
+    /// The end of the budget.
+    Paused,
+    /// The end of the ray.
+    Done,
+}

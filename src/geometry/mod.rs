@@ -1,0 +1,28 @@
+//! Rays and the shapes they meet: pure functions of their inputs, the same bits on every target.
+//!
+//! Coordinates are `f32` of at most 2^126 in magnitude ([`MAX_COORDINATE`]); a ray's parameter `t` counts
+//! lengths of its direction, which need not be normalised.
+
+mod aabb;
+mod axis;
+mod ray;
+mod sphere;
+mod transform;
+mod triangle;
+
+pub use aabb::Aabb;
+pub use axis::Axis;
+pub use ray::{PreparedRay, Ray};
+pub(crate) use ray::{beyond, slack};
+pub use sphere::Sphere;
+pub use transform::{Singular, Transform};
+pub use triangle::{Crossing, Triangle};
+
+/// The largest coordinate magnitude accepted, 2^126: differences of two such numbers do not overflow.
+pub const MAX_COORDINATE: f32 = f32::from_bits((126 + 127) << 23);
+
+/// Whether all coordinates are finite and at most [`MAX_COORDINATE`] in magnitude.
+#[inline]
+pub(crate) fn in_range(v: glam::Vec3) -> bool {
+    v.x.abs() <= MAX_COORDINATE && v.y.abs() <= MAX_COORDINATE && v.z.abs() <= MAX_COORDINATE
+}

@@ -1,0 +1,135 @@
+use core::fmt;
+
+use glam::{Mat3, Vec3};
+
+use super::{Aabb, Ray};
+
+/// An affine map and its inverse: a linear part (rotation, scale, shear, mirroring), then a translation.
+///
+/// ```
+/// use hitscan::{geometry::Transform, glam::{Mat3, Vec3}};
+/// let place = Transform::new(Mat3::from_diagonal(Vec3::splat(2.0)), Vec3::X)?;
+/// assert_eq!(place.point(Vec3::Y), Vec3::new(1.0, 2.0, 0.0));
+/// assert_eq!(place.inverse().point(Vec3::new(1.0, 2.0, 0.0)), Vec3::Y);
+/// # Ok::<(), hitscan::geometry::Singular>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Transform {
+    linear: Mat3,
+    inverse: Mat3,
+    translation: Vec3,
+}
+
+/// The linear part of a transform has no inverse, or a component is not finite.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Singular {
+    /// The determinant found.
+    pub determinant: f32,
+}
+
+impl fmt::Display for Singular {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "the transform cannot be inverted: its determinant is {}", self.determinant)
+    }
+}
+
+impl core::error::Error for Singular {}
+
+impl Transform {
+    /// The map that changes nothing.
+    pub const IDENTITY: Self = Self { linear: Mat3::IDENTITY, inverse: Mat3::IDENTITY, translation: Vec3::ZERO };
+
+    /// The map of `p` to `linear * p + translation`.
+    ///
+    /// # Errors
+    ///
+    /// [`Singular`] if `linear` cannot be inverted in `f32` or anything is not finite.
+    pub fn new(linear: Mat3, translation: Vec3) -> Result<Self, Singular> {
+        let determinant = linear.determinant();
+        let inverse = linear.inverse();
+        if determinant != 0.0 && inverse.is_finite() && linear.is_finite() && translation.is_finite() {
+            Ok(Self { linear, inverse, translation })
+        } else {
+            Err(Singular { determinant })
+        }
+    }
+
+    /// The map that undoes this one.
+    #[must_use]
+    pub fn inverse(&self) -> Self {
+        Self { linear: self.inverse, inverse: self.linear, translation: -(self.inverse * self.translation) }
+    }
+
+    /// Where a point goes.
+    #[must_use]
+    pub fn point(&self, p: Vec3) -> Vec3 {
+        self.linear * p + self.translation
+    }
+
+    /// Where a direction goes; the translation does not touch it.
+    #[must_use]
+    pub fn vector(&self, v: Vec3) -> Vec3 {
+        self.linear * v
+    }
+
+    /// Where a surface normal goes, not normalised: by the inverse transposed.
+    #[must_use]
+    pub fn normal(&self, n: Vec3) -> Vec3 {
+        self.inverse.transpose() * n
+    }
+
+    /// Where a ray goes: `t` counts the same points.
+    #[must_use]
+    pub fn ray(&self, ray: &Ray) -> Ray {
+        Ray { origin: self.point(ray.origin), direction: self.vector(ray.direction), ..*ray }
+    }
+
+    /// A box around where a box goes, up to rounding. Arvo, *Transforming axis-aligned bounding boxes*, 1990.
+    #[must_use]
+    pub fn bounds(&self, aabb: &Aabb) -> Aabb {
+        let mut moved = Aabb::new(self.translation, self.translation);
+        let sides = [(aabb.min.x, aabb.max.x), (aabb.min.y, aabb.max.y), (aabb.min.z, aabb.max.z)];
+        for (column, (min, max)) in [self.linear.x_axis, self.linear.y_axis, self.linear.z_axis].into_iter().zip(sides)
+        {
+            let (a, b) = (column * min, column * max);
+            moved.min += a.min(b);
+            moved.max += a.max(b);
+        }
+        moved
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn singular_and_non_finite_maps_are_refused() {
+        assert!(Transform::new(Mat3::ZERO, Vec3::ZERO).is_err());
+        assert!(Transform::new(Mat3::IDENTITY, Vec3::NAN).is_err());
+        assert!(Transform::new(Mat3::from_diagonal(Vec3::new(1.0, f32::NAN, 1.0)), Vec3::ZERO).is_err());
+        assert!(Transform::new(Mat3::from_diagonal(Vec3::new(1.0, 1.0, 0.0)), Vec3::ZERO).is_err());
+    }
+
+    #[test]
+    fn mirrored_normals_stay_across_their_surface() {
+        let mirror = Transform::new(Mat3::from_diagonal(Vec3::new(-2.0, 1.0, 3.0)), Vec3::ONE).unwrap();
+        let (u, v) = (Vec3::new(1.0, 2.0, 3.0), Vec3::new(-1.0, 0.5, 0.0));
+        let n = mirror.normal(u.cross(v));
+        assert!(n.dot(mirror.vector(u)).abs() < 1.0e-5 && n.dot(mirror.vector(v)).abs() < 1.0e-5);
+    }
+
+    #[test]
+    fn bounds_contain_every_corner() {
+        let turn = Transform::new(Mat3::from_rotation_y(0.7), Vec3::new(5.0, 0.0, 1.0)).unwrap();
+        let cube = Aabb::new(Vec3::splat(-1.0), Vec3::new(2.0, 1.0, 1.0));
+        let moved = turn.bounds(&cube);
+        for x in [cube.min.x, cube.max.x] {
+            for z in [cube.min.z, cube.max.z] {
+                let p = turn.point(Vec3::new(x, 0.0, z));
+                assert!((moved.min - 1.0e-5).cmple(p).all() && p.cmple(moved.max + 1.0e-5).all());
+            }
+        }
+    }
+}

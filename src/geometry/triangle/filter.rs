@@ -1,0 +1,105 @@
+//! The first tier: the shear test in `f32` with a proven bound on its error.
+
+use super::{Crossing, Triangle};
+use crate::geometry::PreparedRay;
+
+/// Half an ulp of 1.
+const U: f32 = 1.0 / 16_777_216.0;
+
+/// 2^-125: covers what underflow can take from an edge function.
+const UNDERFLOW: f32 = 2.0 * f32::MIN_POSITIVE;
+
+/// The relative error within which `t` is certified, 2^-17.
+const TOLERANCE: f32 = 1.0 / 131_072.0;
+
+/// 2^-100: smaller magnitudes are left to the tiers with a wider range.
+const SMALL: f32 = 7.888_609e-31;
+
+/// What `f32` can prove.
+pub(super) enum Verdict {
+    /// The ray misses.
+    Miss,
+    /// The ray hits here.
+    Hit(Crossing),
+    /// The ray hits within `error` of this parameter.
+    Near { crossing: Crossing, error: f32 },
+    /// Nothing.
+    Unproven,
+}
+
+/// The corners relative to the ray's origin, sheared so that the ray runs along the third axis.
+pub(super) struct Sheared {
+    x: [f32; 3],
+    y: [f32; 3],
+    z: [f32; 3],
+}
+
+#[inline(always)]
+pub(super) fn shear(triangle: &Triangle, ray: &PreparedRay) -> Sheared {
+    let kz = ray.major;
+    let (kx, ky) = (kz.next(), kz.next().next());
+    let origin = ray.ray().origin;
+    let (ox, oy, oz) = (kx.of(origin), ky.of(origin), kz.of(origin));
+    let [sx, sy] = ray.shear;
+    let corners = [triangle.a, triangle.b, triangle.c];
+    let z = corners.map(|v| kz.of(v) - oz);
+    let x = [0, 1, 2].map(|i: usize| (kx.of(corners[i]) - ox) - sx * z[i]);
+    let y = [0, 1, 2].map(|i: usize| (ky.of(corners[i]) - oy) - sy * z[i]);
+    Sheared { x, y, z }
+}
+
+/// Twice the areas that the ray spans with the edges opposite `a`, `b` and `c`.
+///
+/// An edge shared with another triangle gives exactly the negative there, so nothing can pass between the two.
+#[inline(always)]
+pub(super) fn edges(s: &Sheared) -> [f32; 3] {
+    let ([ax, bx, cx], [ay, by, cy]) = (s.x, s.y);
+    [cx * by - cy * bx, ax * cy - ay * cx, bx * ay - by * ax]
+}
+
+#[inline(always)]
+pub(super) fn test(triangle: &Triangle, ray: &PreparedRay) -> Verdict {
+    let s = shear(triangle, ray);
+    let [u, v, w] = edges(&s);
+    let ([ax, bx, cx], [ay, by, cy], [az, bz, cz]) = (s.x, s.y, s.z);
+    let spread = ((ax.abs() + ay.abs()) + (bx.abs() + by.abs())) + (cx.abs() + cy.abs());
+    let (za, zb, zc) = (az.abs(), bz.abs(), cz.abs());
+    let depth = if za > zb { za } else { zb };
+    let depth = if zc > depth { zc } else { depth };
+
+    // Signs are proven outside ±bound; comparisons are written so that NaN and infinity prove nothing.
+    let bound = (depth * (8.0 * U) + spread * (4.0 * U)) * spread + UNDERFLOW;
+    if (u > bound) | (v > bound) | (w > bound) {
+        if (u < -bound) | (v < -bound) | (w < -bound) {
+            return if bound < f32::INFINITY { Verdict::Miss } else { Verdict::Unproven };
+        }
+        if !((u > bound) & (v > bound) & (w > bound)) {
+            return Verdict::Unproven;
+        }
+    } else if !((u < -bound) & (v < -bound) & (w < -bound)) {
+        return Verdict::Unproven;
+    }
+
+    // The determinant has the sign of -(d . N) * d_major.
+    let determinant = (u + v) + w;
+    let inverse = ray.views[ray.major as usize].entry;
+    let front = (determinant > 0.0) == (inverse > 0.0);
+    let (e1, e2) = (bz - az, cz - az);
+    let q = az + (v * e1 + w * e2) / determinant;
+    let t = q * inverse;
+
+    let extent = e1.abs() + e2.abs();
+    let area = determinant.abs();
+    let error = extent * spread * (depth + spread) + (depth + extent) * area; // |q - exact| <= 8 U error / area
+    let crossing = Crossing { t, front };
+    if bound * 16.0 < area && area < 1.0e30 {
+        let limit = TOLERANCE * q.abs() * area;
+        if error * (8.0 * U) < limit && limit > SMALL && q.abs() > SMALL && t.abs() > 1.0e-30 && t.abs() < 1.0e37 {
+            return Verdict::Hit(crossing);
+        }
+        let error = ((error * (8.0 * U) + 1.0e-36) / area + q.abs() * (8.0 * U) + 1.0e-36) * inverse.abs() + 1.0e-36;
+        Verdict::Near { crossing, error }
+    } else {
+        Verdict::Near { crossing, error: f32::INFINITY }
+    }
+}

@@ -1,0 +1,147 @@
+//! The certified triangle test (rule R3 of ARCHITECTURE.md).
+//!
+//! The inputs are read as real numbers, so whether a ray hits is a mathematical fact. Three tiers find it out, each
+//! answering only what it can prove: [`filter`] in `f32`, one of the two shortcuts with more bits, and [`exact`].
+
+mod clip;
+mod double;
+mod exact;
+mod filter;
+mod shortcut;
+
+use glam::Vec3;
+
+use self::filter::Verdict;
+use super::{Aabb, PreparedRay, ray::beyond};
+
+/// A triangle given by its corners; counter-clockwise seen from its front.
+///
+/// ```
+/// use hitscan::{Ray, geometry::Triangle, glam::Vec3};
+/// let triangle = Triangle::new(Vec3::ZERO, Vec3::X, Vec3::Y);
+/// let ray = Ray::new(Vec3::new(0.25, 0.25, 2.0), Vec3::NEG_Z).prepare().unwrap();
+/// let crossing = triangle.intersect(&ray, 0.0, 10.0).unwrap();
+/// assert!(crossing.t == 2.0 && crossing.front);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Triangle {
+    /// The first corner.
+    pub a: Vec3,
+    /// The second corner.
+    pub b: Vec3,
+    /// The third corner.
+    pub c: Vec3,
+}
+
+/// Where and from which side a ray crosses a triangle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Crossing {
+    /// The ray's parameter: within 2^-17 of the real one, a pure function of ray and triangle.
+    pub t: f32,
+    /// Whether the ray comes from the front.
+    pub front: bool,
+}
+
+/// The sides on which a real number may lie of zero.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Sign {
+    Negative,
+    Zero,
+    Positive,
+}
+
+/// The common sign of the three edge functions if they make a hit: none opposite, not all zero.
+#[inline]
+fn agreement(signs: [Sign; 3]) -> Option<Sign> {
+    let (negative, positive) = (signs.contains(&Sign::Negative), signs.contains(&Sign::Positive));
+    match (negative, positive) {
+        (true, false) => Some(Sign::Negative),
+        (false, true) => Some(Sign::Positive),
+        _ => None,
+    }
+}
+
+impl Triangle {
+    /// The triangle with these corners.
+    #[inline(always)]
+    #[must_use]
+    pub const fn new(a: Vec3, b: Vec3, c: Vec3) -> Self {
+        Self { a, b, c }
+    }
+
+    /// Where the line of `ray` crosses the triangle, borders included; `None` if it misses, lies in the triangle's plane,
+    /// or the parameter exceeds `f32`.
+    ///
+    /// A crossing outside `t_min..=t_max` may be reported or not: the limits only save work. Watertight: rays do not
+    /// pass between triangles that share an edge or a corner. The first tier is the shear of Woop, Benthin and Wald,
+    /// *Watertight ray/triangle intersection*, JCGT 2013, with a forward error bound.
+    #[inline(always)]
+    #[must_use]
+    pub fn intersect(&self, ray: &PreparedRay, t_min: f32, t_max: f32) -> Option<Crossing> {
+        match filter::test(self, ray) {
+            Verdict::Miss => None,
+            Verdict::Hit(crossing) => Some(crossing),
+            Verdict::Near { crossing, error } => {
+                // Proven to lie outside: the slack belongs before any rounding that made `t` (rule R7).
+                if crossing.t + error < t_min || crossing.t - error > beyond(t_max) {
+                    return None;
+                }
+                self.certify(ray, t_min, t_max, Some(crossing.front))
+            }
+            Verdict::Unproven => self.certify(ray, t_min, t_max, None),
+        }
+    }
+
+    /// The slow tiers; `front` is known if the filter has proven the hit.
+    #[cold]
+    #[inline(never)]
+    fn certify(&self, ray: &PreparedRay, t_min: f32, t_max: f32, front: Option<bool>) -> Option<Crossing> {
+        // A crossing lies between the corners' parameters along the major axis.
+        let planes = [self.a, self.b, self.c].map(|v| ray.entry(ray.major, ray.major.of(v)));
+        let nearest = planes.iter().fold(f32::INFINITY, |x, &t| if t < x { t } else { x });
+        let farthest = planes.iter().fold(f32::NEG_INFINITY, |x, &t| if t > x { t } else { x });
+        if nearest > beyond(t_max) || beyond(farthest) < t_min {
+            return None;
+        }
+        // Doubles are in hardware on hosts; on chips pairs of floats are several times faster than soft doubles.
+        if cfg!(any(target_pointer_width = "64", target_arch = "x86", target_arch = "wasm32")) {
+            shortcut::test(self, ray, front)
+        } else {
+            double::test(self, ray, front)
+        }
+    }
+
+    /// The normal `(b - a) x (c - a)`, of twice the triangle's area in length, on the front side.
+    #[inline]
+    #[must_use]
+    pub fn normal(&self) -> Vec3 {
+        (self.b - self.a).cross(self.c - self.a)
+    }
+
+    /// The weights of `b` and `c` where the line of `ray` crosses the plane, clamped to the triangle.
+    ///
+    /// An `f32` estimate for shading and texture coordinates; deterministic like everything else.
+    #[must_use]
+    pub fn weights(&self, ray: &PreparedRay) -> (f32, f32) {
+        let [u, v, w] = filter::edges(&filter::shear(self, ray)).map(f32::abs);
+        let sum = u + v + w;
+        if sum > 0.0 && sum.is_finite() { (v / sum, w / sum) } else { (1.0 / 3.0, 1.0 / 3.0) }
+    }
+
+    /// The least box around the triangle.
+    #[inline]
+    #[must_use]
+    pub fn bounds(&self) -> Aabb {
+        Aabb::new(self.a, self.a).union(&Aabb::new(self.b, self.b)).union(&Aabb::new(self.c, self.c))
+    }
+
+    /// A box around the part of the triangle inside `cell`, rounded outward; `None` if there certainly is none.
+    #[must_use]
+    pub fn clip(&self, cell: &Aabb) -> Option<Aabb> {
+        clip::bounds(self, cell)
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,77 @@
+//! The second tier where doubles are in hardware: `f64` with a forward error bound.
+
+use glam::Vec3;
+
+use super::{Crossing, Sign, Triangle, agreement, exact};
+use crate::geometry::PreparedRay;
+
+/// Half an ulp of 1, 2^-53.
+const U: f64 = 1.0 / 9_007_199_254_740_992.0;
+
+/// A value and a bound on its error.
+#[derive(Clone, Copy)]
+struct Bounded {
+    value: f64,
+    error: f64,
+}
+
+impl Bounded {
+    fn sign(self) -> Option<Sign> {
+        if self.value > self.error {
+            Some(Sign::Positive)
+        } else if self.value < -self.error {
+            Some(Sign::Negative)
+        } else {
+            None
+        }
+    }
+}
+
+fn between(from: Vec3, to: Vec3) -> [f64; 3] {
+    [0, 1, 2].map(|i: usize| f64::from(to.to_array()[i]) - f64::from(from.to_array()[i]))
+}
+
+fn determinant(x: &[f64; 3], y: &[f64; 3], z: &[f64; 3]) -> Bounded {
+    let (p0, q0) = (y[1] * z[2], y[2] * z[1]);
+    let (p1, q1) = (y[2] * z[0], y[0] * z[2]);
+    let (p2, q2) = (y[0] * z[1], y[1] * z[0]);
+    let value = x[0] * (p0 - q0) + x[1] * (p1 - q1) + x[2] * (p2 - q2);
+    let scale =
+        x[0].abs() * (p0.abs() + q0.abs()) + x[1].abs() * (p1.abs() + q1.abs()) + x[2].abs() * (p2.abs() + q2.abs());
+    Bounded { value, error: scale * (16.0 * U) }
+}
+
+pub(super) fn test(triangle: &Triangle, ray: &PreparedRay, front: Option<bool>) -> Option<Crossing> {
+    let origin = ray.ray().origin;
+    let d = ray.ray().direction.to_array().map(f64::from);
+    let (a, b, c) = (between(origin, triangle.a), between(origin, triangle.b), between(origin, triangle.c));
+    let (u, v, w) = (determinant(&d, &b, &c), determinant(&d, &c, &a), determinant(&d, &a, &b));
+    let front = match front {
+        Some(front) => front,
+        None => facing(triangle, ray, [u, v, w])?,
+    };
+
+    let volume = determinant(&a, &b, &c);
+    let area = u.value + v.value + w.value;
+    let area_error = (u.error + v.error + w.error) * 1.01;
+    let quotient = volume.value / area;
+    let relative = volume.error / volume.value.abs() + area_error / (area.abs() - area_error) + 4.0 * U;
+    let (low, high) = ((quotient * (1.0 - relative)) as f32, (quotient * (1.0 + relative)) as f32);
+    let t = if area.abs() > 2.0 * area_error && relative < 1.0e-3 && low == high {
+        low
+    } else {
+        exact::parameter(triangle, ray)
+    };
+    t.is_finite().then_some(Crossing { t, front })
+}
+
+/// From which side the ray hits, if it does.
+fn facing(triangle: &Triangle, ray: &PreparedRay, edges: [Bounded; 3]) -> Option<bool> {
+    let proven = edges.map(Bounded::sign);
+    if proven.contains(&Some(Sign::Positive)) && proven.contains(&Some(Sign::Negative)) {
+        return None;
+    }
+    let corners = [(triangle.b, triangle.c), (triangle.c, triangle.a), (triangle.a, triangle.b)];
+    let signs = [0, 1, 2].map(|i: usize| proven[i].unwrap_or_else(|| exact::edge(ray, corners[i].0, corners[i].1)));
+    agreement(signs).map(|sign| sign == Sign::Negative)
+}

@@ -1,0 +1,308 @@
+use core::fmt;
+
+use glam::{Vec2, Vec3};
+
+use super::{Hit, Primitives, Span, Surface, surface::unit};
+use crate::geometry::{Aabb, PreparedRay, Ray, Triangle, in_range};
+
+/// The corners of triangles: three vertex numbers each, in 16 bits where they fit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Indices<'a> {
+    /// Numbers up to 65,535: 6 bytes a triangle.
+    Narrow(&'a [[u16; 3]]),
+    /// Numbers up to 2^32 - 1: 12 bytes a triangle.
+    Wide(&'a [[u32; 3]]),
+}
+
+impl<'a> Indices<'a> {
+    /// How many triangles there are.
+    #[inline(always)]
+    #[must_use]
+    pub const fn len(&self) -> usize {
+        match self {
+            Self::Narrow(list) => list.len(),
+            Self::Wide(list) => list.len(),
+        }
+    }
+
+    /// Whether there are none.
+    #[must_use]
+    pub const fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The corners of a triangle.
+    #[inline(always)]
+    #[must_use]
+    pub fn get(&self, triangle: u32) -> Option<[u32; 3]> {
+        match self {
+            Self::Narrow(list) => list.get(triangle as usize).map(|corners| corners.map(u32::from)),
+            Self::Wide(list) => list.get(triangle as usize).copied(),
+        }
+    }
+}
+
+impl<'a> From<&'a [[u16; 3]]> for Indices<'a> {
+    fn from(list: &'a [[u16; 3]]) -> Self {
+        Self::Narrow(list)
+    }
+}
+
+impl<'a> From<&'a [[u32; 3]]> for Indices<'a> {
+    fn from(list: &'a [[u32; 3]]) -> Self {
+        Self::Wide(list)
+    }
+}
+
+impl<'a, const N: usize> From<&'a [[u16; 3]; N]> for Indices<'a> {
+    fn from(list: &'a [[u16; 3]; N]) -> Self {
+        Self::Narrow(list)
+    }
+}
+
+impl<'a, const N: usize> From<&'a [[u32; 3]; N]> for Indices<'a> {
+    fn from(list: &'a [[u32; 3]; N]) -> Self {
+        Self::Wide(list)
+    }
+}
+
+/// The sides from which triangles can be hit.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Sides {
+    /// Both.
+    #[default]
+    Both,
+    /// The front only, where the corners run counter-clockwise.
+    Front,
+}
+
+/// Why a mesh was refused.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum MeshError {
+    /// A corner names a vertex that does not exist.
+    Index {
+        /// The triangle.
+        triangle: u32,
+        /// The vertex it names.
+        vertex: u32,
+        /// How many vertices there are.
+        vertices: u32,
+    },
+    /// A coordinate is not finite or exceeds [`MAX_COORDINATE`](crate::geometry::MAX_COORDINATE).
+    Vertex {
+        /// The triangle that uses it.
+        triangle: u32,
+        /// The vertex.
+        vertex: u32,
+    },
+    /// More than 2^32 - 2 triangles.
+    TooMany,
+    /// Not one mask per triangle.
+    Masks {
+        /// How many masks were given.
+        masks: usize,
+        /// How many triangles there are.
+        triangles: u32,
+    },
+}
+
+impl fmt::Display for MeshError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Index { triangle, vertex, vertices } => {
+                write!(f, "triangle {triangle} names vertex {vertex}, but there are {vertices} vertices")
+            }
+            Self::Vertex { triangle, vertex } => {
+                write!(f, "vertex {vertex} of triangle {triangle} is not finite or beyond 2^126")
+            }
+            Self::TooMany => write!(f, "a mesh holds at most 2^32 - 2 triangles"),
+            Self::Masks { masks, triangles } => write!(f, "{masks} masks were given for {triangles} triangles"),
+        }
+    }
+}
+
+impl core::error::Error for MeshError {}
+
+/// Triangles over borrowed vertices: 16 bytes of view, whatever the mesh.
+///
+/// Checked once when made: every index names a vertex and every vertex used is finite. Triangles without area are
+/// allowed and never hit.
+///
+/// ```
+/// use hitscan::{Mesh, glam::Vec3};
+/// let vertices = [Vec3::ZERO, Vec3::X, Vec3::Y];
+/// let mesh = Mesh::new(&vertices, &[[0_u16, 1, 2]])?;
+/// assert!(Mesh::new(&vertices, &[[0_u16, 1, 3]]).is_err());
+/// # Ok::<(), hitscan::primitives::MeshError>(())
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Mesh<'a> {
+    vertices: &'a [Vec3],
+    indices: Indices<'a>,
+    sides: Sides,
+    masks: Option<&'a [u32]>,
+}
+
+impl<'a> Mesh<'a> {
+    /// The mesh of these triangles, hit from both sides, seen by all rays.
+    ///
+    /// # Errors
+    ///
+    /// [`MeshError`] names the first triangle with a missing or non-finite vertex.
+    pub fn new(vertices: &'a [Vec3], indices: impl Into<Indices<'a>>) -> Result<Self, MeshError> {
+        let indices = indices.into();
+        let count = u32::try_from(indices.len()).ok().filter(|&n| n < u32::MAX).ok_or(MeshError::TooMany)?;
+        for triangle in 0..count {
+            for vertex in indices.get(triangle).into_iter().flatten() {
+                let position = vertices.get(vertex as usize).ok_or(MeshError::Index {
+                    triangle,
+                    vertex,
+                    vertices: vertices.len() as u32,
+                })?;
+                if !in_range(*position) {
+                    return Err(MeshError::Vertex { triangle, vertex });
+                }
+            }
+        }
+        Ok(Self { vertices, indices, sides: Sides::Both, masks: None })
+    }
+
+    /// The same mesh, hit from `sides` only.
+    #[must_use]
+    pub const fn with_sides(self, sides: Sides) -> Self {
+        Self { sides, ..self }
+    }
+
+    /// The same mesh, each triangle seen only by rays that share a bit with its mask.
+    ///
+    /// # Errors
+    ///
+    /// [`MeshError::Masks`] if there is not one mask per triangle.
+    pub fn with_masks(self, masks: &'a [u32]) -> Result<Self, MeshError> {
+        if masks.len() == self.indices.len() {
+            Ok(Self { masks: Some(masks), ..self })
+        } else {
+            Err(MeshError::Masks { masks: masks.len(), triangles: self.len() })
+        }
+    }
+
+    /// The vertices.
+    #[must_use]
+    pub const fn vertices(&self) -> &'a [Vec3] {
+        self.vertices
+    }
+
+    /// The corners of the triangles.
+    #[must_use]
+    pub const fn indices(&self) -> Indices<'a> {
+        self.indices
+    }
+
+    /// The triangle of this number; one without area if there is none.
+    #[inline(always)]
+    #[must_use]
+    pub fn triangle(&self, index: u32) -> Triangle {
+        // Cannot fail for a valid index, see `new`; written so that no panic is linked in.
+        let corner = |vertex: u32| self.vertices.get(vertex as usize).copied().unwrap_or(Vec3::ZERO);
+        let [a, b, c] = self.indices.get(index).unwrap_or_default();
+        Triangle::new(corner(a), corner(b), corner(c))
+    }
+}
+
+impl Primitives for Mesh<'_> {
+    #[inline(always)]
+    fn len(&self) -> u32 {
+        self.indices.len() as u32
+    }
+
+    #[inline]
+    fn bounds(&self, index: u32) -> Aabb {
+        self.triangle(index).bounds()
+    }
+
+    #[inline(always)]
+    fn intersect(&self, index: u32, ray: &PreparedRay, span: &Span) -> Option<Hit> {
+        let crossing = self.triangle(index).intersect(ray, span.t_min(), span.t_max())?;
+        if self.sides == Sides::Front && !crossing.front { None } else { span.accept(crossing.t, index) }
+    }
+
+    /// The point is made from the corners, so its error does not grow with the distance from which it was hit.
+    fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
+        let triangle = self.triangle(hit.primitive);
+        let Some(prepared) = ray.prepare() else { return Surface::facing(ray, hit.t) };
+        let (v, w) = triangle.weights(&prepared);
+        let point = triangle.a * (1.0 - v - w) + triangle.b * v + triangle.c * w;
+        let normal = unit(triangle.normal());
+        let front = match triangle.intersect(&prepared, f32::MIN, f32::MAX) {
+            Some(crossing) => crossing.front,
+            None => ray.direction.dot(normal) < 0.0,
+        };
+        // Seven roundings: three products, two sums, and the weights' two; Physically Based Rendering, §6.8.
+        let magnitude = triangle.a.abs() + triangle.b.abs() + triangle.c.abs();
+        let error = magnitude.max_element() * (8.0 / 16_777_216.0);
+        Surface { point, geometric_normal: normal, shading_normal: normal, uv: Vec2::new(v, w), front, error }
+    }
+
+    #[inline(always)]
+    fn mask(&self, index: u32) -> u32 {
+        match self.masks {
+            None => u32::MAX,
+            Some(masks) => masks.get(index as usize).copied().unwrap_or(0),
+        }
+    }
+
+    #[inline(always)]
+    fn is_certified(&self, _index: u32) -> bool {
+        true
+    }
+
+    fn clip(&self, index: u32, cell: &Aabb) -> Option<Aabb> {
+        self.triangle(index).clip(cell)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const VERTICES: [Vec3; 4] = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::NAN];
+
+    #[test]
+    fn bad_corners_are_named() {
+        let index = Mesh::new(&VERTICES, &[[0_u32, 1, 2], [0, 9, 1]]).unwrap_err();
+        assert_eq!(index, MeshError::Index { triangle: 1, vertex: 9, vertices: 4 });
+        let vertex = Mesh::new(&VERTICES, &[[0_u16, 1, 2], [0, 1, 3]]).unwrap_err();
+        assert_eq!(vertex, MeshError::Vertex { triangle: 1, vertex: 3 });
+        assert!(Mesh::new(&VERTICES, &[[0_u16, 1, 2]]).unwrap().with_masks(&[1, 2]).is_err());
+    }
+
+    #[test]
+    fn single_sided_triangles_are_seen_from_the_front_only() {
+        let mesh = Mesh::new(&VERTICES, &[[0_u16, 1, 2]]).unwrap().with_sides(Sides::Front);
+        let span = Span::new(Hit { t: 0.0, primitive: 0 }, Hit { t: 9.0, primitive: u32::MAX });
+        let hit = |z: f32| {
+            let ray = Ray::new(Vec3::new(0.25, 0.25, z), Vec3::Z * -z).prepare().unwrap();
+            mesh.intersect(0, &ray, &span)
+        };
+        assert!(hit(1.0).is_some() && hit(-1.0).is_none());
+    }
+
+    #[test]
+    fn secondary_rays_leave_their_triangle() {
+        let vertices = [Vec3::new(1.0e5, 3.0, 7.0), Vec3::new(1.0e5 + 3.0, -5.0, 7.1), Vec3::new(1.0e5, 4.0, 11.0)];
+        let mesh = Mesh::new(&vertices, &[[0_u16, 1, 2]]).unwrap();
+        let everything = Span::new(Hit { t: 0.0, primitive: 0 }, Hit { t: f32::MAX, primitive: u32::MAX });
+        for side in [1.0, -1.0] {
+            let target = (vertices[0] + vertices[1] + vertices[2]) / 3.0;
+            let ray = Ray::new(target + mesh.triangle(0).normal() * side, mesh.triangle(0).normal() * -side);
+            let hit = mesh.intersect(0, &ray.prepare().unwrap(), &everything).unwrap();
+            let surface = mesh.surface(&ray, &hit);
+            assert_eq!(surface.front, side > 0.0);
+            let back = -ray.direction;
+            let away = Ray::new(surface.start_towards(back), back).prepare().unwrap();
+            assert!(mesh.intersect(0, &away, &everything).is_none());
+        }
+    }
+}

@@ -1,0 +1,69 @@
+use super::{Hit, Primitives, Span, Surface};
+use crate::geometry::{Aabb, PreparedRay, Ray};
+
+/// Two collections as one: the numbers of the second follow those of the first.
+///
+/// ```
+/// use hitscan::{List, Mesh, Ray, Scene, geometry::Sphere, glam::Vec3, primitives::Spheres};
+/// let vertices = [Vec3::ZERO, Vec3::X, Vec3::Y];
+/// let balls = [Sphere::new(Vec3::new(0.2, 0.2, 2.0), 0.5)];
+/// let both = (Mesh::new(&vertices, &[[0_u16, 1, 2]])?, Spheres::new(&balls)?);
+/// let scene = Scene::new(List::new(&both)?, &both)?;
+/// let down = Ray::new(Vec3::new(0.2, 0.2, 5.0), Vec3::NEG_Z);
+/// let hits: Vec<u32> = scene.hits(&down).map(|hit| hit.primitive).collect();
+/// assert_eq!(hits, [1, 1, 0]); // into the ball, out of it, the triangle
+/// # Ok::<(), hitscan::Error>(())
+/// ```
+impl<A: Primitives, B: Primitives> Primitives for (A, B) {
+    fn len(&self) -> u32 {
+        self.0.len().saturating_add(self.1.len())
+    }
+
+    fn bounds(&self, index: u32) -> Aabb {
+        match index.checked_sub(self.0.len()) {
+            None => self.0.bounds(index),
+            Some(index) => self.1.bounds(index),
+        }
+    }
+
+    #[inline]
+    fn intersect(&self, index: u32, ray: &PreparedRay, span: &Span) -> Option<Hit> {
+        match index.checked_sub(self.0.len()) {
+            None => self.0.intersect(index, ray, span),
+            Some(second) => {
+                let base = self.0.len();
+                let hit = self.1.intersect(second, ray, &span.numbered_from(base))?;
+                Some(Hit { primitive: hit.primitive.saturating_add(base), ..hit })
+            }
+        }
+    }
+
+    fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
+        match hit.primitive.checked_sub(self.0.len()) {
+            None => self.0.surface(ray, hit),
+            Some(primitive) => self.1.surface(ray, &Hit { primitive, ..*hit }),
+        }
+    }
+
+    fn mask(&self, index: u32) -> u32 {
+        match index.checked_sub(self.0.len()) {
+            None => self.0.mask(index),
+            Some(index) => self.1.mask(index),
+        }
+    }
+
+    #[inline]
+    fn is_certified(&self, index: u32) -> bool {
+        match index.checked_sub(self.0.len()) {
+            None => self.0.is_certified(index),
+            Some(index) => self.1.is_certified(index),
+        }
+    }
+
+    fn clip(&self, index: u32, cell: &Aabb) -> Option<Aabb> {
+        match index.checked_sub(self.0.len()) {
+            None => self.0.clip(index, cell),
+            Some(index) => self.1.clip(index, cell),
+        }
+    }
+}

@@ -1,0 +1,188 @@
+use crate::{geometry::PreparedRay, primitives::Hit};
+
+/// What to look at after a hit.
+pub(crate) enum Next {
+    /// The next primitive: no further hit of this one can count.
+    Primitive,
+    /// The next hit of the same primitive.
+    Hit,
+    /// Nothing more.
+    Nothing,
+}
+
+/// A query's part in a search: which hits it wants and what it does with them.
+pub(crate) trait Collector {
+    /// The least hit wanted.
+    fn from(&self) -> Hit;
+
+    /// The hit before which all are wanted; it never moves back.
+    fn until(&self) -> Hit;
+
+    /// Takes a hit between the two, in no particular order and some of them repeatedly.
+    fn take(&mut self, hit: Hit) -> Next;
+}
+
+/// The least hit in a ray's interval.
+pub(crate) const fn start_of(ray: &PreparedRay) -> Hit {
+    Hit { t: ray.ray().t_min, primitive: 0 }
+}
+
+/// The hit behind all in a ray's interval; no primitive has its number.
+pub(crate) const fn end_of(ray: &PreparedRay) -> Hit {
+    Hit { t: ray.ray().t_max, primitive: u32::MAX }
+}
+
+/// Keeps the least hit.
+pub(crate) struct Closest {
+    from: Hit,
+    best: Hit,
+}
+
+impl Closest {
+    #[inline(always)]
+    pub(crate) const fn new(ray: &PreparedRay) -> Self {
+        Self { from: start_of(ray), best: end_of(ray) }
+    }
+
+    #[inline(always)]
+    pub(crate) fn hit(&self) -> Option<Hit> {
+        (self.best.primitive != u32::MAX).then_some(self.best)
+    }
+}
+
+impl Collector for Closest {
+    #[inline(always)]
+    fn from(&self) -> Hit {
+        self.from
+    }
+
+    #[inline(always)]
+    fn until(&self) -> Hit {
+        self.best
+    }
+
+    #[inline(always)]
+    fn take(&mut self, hit: Hit) -> Next {
+        self.best = hit;
+        Next::Primitive
+    }
+}
+
+/// Stops at the first hit it is offered.
+pub(crate) struct Any {
+    from: Hit,
+    until: Hit,
+    found: bool,
+}
+
+impl Any {
+    #[inline(always)]
+    pub(crate) const fn new(ray: &PreparedRay) -> Self {
+        Self { from: start_of(ray), until: end_of(ray), found: false }
+    }
+
+    #[inline(always)]
+    pub(crate) const fn found(&self) -> bool {
+        self.found
+    }
+}
+
+impl Collector for Any {
+    #[inline(always)]
+    fn from(&self) -> Hit {
+        self.from
+    }
+
+    #[inline(always)]
+    fn until(&self) -> Hit {
+        self.until
+    }
+
+    #[inline(always)]
+    fn take(&mut self, _hit: Hit) -> Next {
+        self.found = true;
+        Next::Nothing
+    }
+}
+
+/// Keeps the least hits, sorted, as many as there is room for.
+pub(crate) struct Nearest<'h> {
+    from: Hit,
+    until: Hit,
+    hits: &'h mut heapless::VecView<Hit>,
+}
+
+impl<'h> Nearest<'h> {
+    pub(crate) const fn new(from: Hit, until: Hit, hits: &'h mut heapless::VecView<Hit>) -> Self {
+        Self { from, until, hits }
+    }
+}
+
+impl Collector for Nearest<'_> {
+    fn from(&self) -> Hit {
+        self.from
+    }
+
+    fn until(&self) -> Hit {
+        match self.hits.last() {
+            Some(&last) if self.hits.is_full() => last,
+            _ => self.until,
+        }
+    }
+
+    fn take(&mut self, hit: Hit) -> Next {
+        let place = self.hits.iter().take_while(|other| other.precedes(&hit)).count();
+        if self.hits.get(place).is_some_and(|other| !hit.precedes(other)) {
+            // Offered before, by another leaf.
+            return Next::Hit;
+        }
+        if self.hits.is_full() {
+            self.hits.pop();
+        }
+        match self.hits.push(hit) {
+            Ok(()) => {
+                if let Some(tail) = self.hits.get_mut(place..) {
+                    tail.rotate_right(1);
+                }
+                Next::Hit
+            }
+            // There is no room for any.
+            Err(_) => Next::Nothing,
+        }
+    }
+}
+
+/// Passes on the hits that a closure accepts.
+pub(crate) struct Where<C, F> {
+    inner: C,
+    keep: F,
+}
+
+impl<C, F> Where<C, F> {
+    #[inline(always)]
+    pub(crate) const fn new(inner: C, keep: F) -> Self {
+        Self { inner, keep }
+    }
+
+    #[inline(always)]
+    pub(crate) fn into_inner(self) -> C {
+        self.inner
+    }
+}
+
+impl<C: Collector, F: FnMut(&Hit) -> bool> Collector for Where<C, F> {
+    #[inline(always)]
+    fn from(&self) -> Hit {
+        self.inner.from()
+    }
+
+    #[inline(always)]
+    fn until(&self) -> Hit {
+        self.inner.until()
+    }
+
+    #[inline(always)]
+    fn take(&mut self, hit: Hit) -> Next {
+        if (self.keep)(&hit) { self.inner.take(hit) } else { Next::Hit }
+    }
+}

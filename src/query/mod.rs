@@ -1,0 +1,9 @@
+//! What a query makes of the hits it is offered, and queries that go on later.
+
+mod collector;
+mod hits;
+mod paused;
+
+pub(crate) use collector::{Any, Closest, Collector, Nearest, Next, Where, end_of, start_of};
+pub use hits::Hits;
+pub use paused::{PausedQuery, Progress};

@@ -1,0 +1,194 @@
+//! A structure together with its primitives: what rays are cast at.
+
+use core::fmt;
+
+use crate::{
+    accel::{Accelerator, Traversal},
+    geometry::{Aabb, PreparedRay, Ray},
+    primitives::{Hit, Primitives, Span, Surface},
+    query::{Any, Closest, Collector, Hits, Nearest, Next, PausedQuery, Where, end_of, start_of},
+};
+
+/// The structure was built over another number of primitives.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Mismatch {
+    /// Primitives of the structure.
+    pub structure: u32,
+    /// Primitives given.
+    pub primitives: u32,
+}
+
+impl fmt::Display for Mismatch {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "the structure is over {} primitives, but there are {}", self.structure, self.primitives)
+    }
+}
+
+impl core::error::Error for Mismatch {}
+
+/// A structure and the primitives it was built over.
+///
+/// All queries return the same bits for every structure: the hits are ordered by `t`, then by number, and an interval's
+/// ends belong to it. An invalid ray hits nothing.
+#[derive(Clone, Copy, Debug)]
+pub struct Scene<A, P> {
+    accelerator: A,
+    primitives: P,
+}
+
+impl<A: Accelerator, P: Primitives> Scene<A, P> {
+    /// The scene of `primitives`, by value or by reference, under `accelerator`.
+    ///
+    /// # Errors
+    ///
+    /// [`Mismatch`] if the numbers of primitives differ. That they are the same ones is the caller's to see to.
+    pub fn new(accelerator: A, primitives: P) -> Result<Self, Mismatch> {
+        let (structure, count) = (accelerator.primitives(), primitives.len());
+        if structure == count {
+            Ok(Self { accelerator, primitives })
+        } else {
+            Err(Mismatch { structure, primitives: count })
+        }
+    }
+
+    /// The structure.
+    #[must_use]
+    pub const fn accelerator(&self) -> &A {
+        &self.accelerator
+    }
+
+    /// The primitives.
+    #[must_use]
+    pub const fn primitives(&self) -> &P {
+        &self.primitives
+    }
+
+    /// The box around everything.
+    #[must_use]
+    pub fn bounds(&self) -> Aabb {
+        self.accelerator.bounds()
+    }
+
+    /// The surface at a hit of `ray`.
+    #[must_use]
+    pub fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
+        self.primitives.surface(ray, hit)
+    }
+
+    /// The first hit of the ray.
+    #[must_use]
+    pub fn closest_hit(&self, ray: &Ray) -> Option<Hit> {
+        let ray = ray.prepare()?;
+        let mut closest = Closest::new(&ray);
+        self.search(&ray, &mut closest);
+        closest.hit()
+    }
+
+    /// The first hit of the ray that `keep` accepts: cut-outs, or everything but oneself.
+    ///
+    /// ```
+    /// # use hitscan::{List, Mesh, Ray, Scene, glam::Vec3};
+    /// # let vertices = [Vec3::ZERO, Vec3::X, Vec3::Y];
+    /// # let mesh = Mesh::new(&vertices, &[[0_u16, 1, 2], [0, 1, 2]])?;
+    /// # let scene = Scene::new(List::new(&mesh)?, &mesh)?;
+    /// let ray = Ray::new(Vec3::new(0.2, 0.2, -1.0), Vec3::Z);
+    /// let other = scene.closest_hit_where(&ray, |hit| hit.primitive != 0).unwrap();
+    /// assert_eq!(other.primitive, 1);
+    /// # Ok::<(), hitscan::Error>(())
+    /// ```
+    #[must_use]
+    pub fn closest_hit_where(&self, ray: &Ray, keep: impl FnMut(&Hit) -> bool) -> Option<Hit> {
+        let ray = ray.prepare()?;
+        let mut closest = Where::new(Closest::new(&ray), keep);
+        self.search(&ray, &mut closest);
+        closest.into_inner().hit()
+    }
+
+    /// Whether the ray hits anything: for shadows and visibility, cheaper than the closest hit.
+    #[must_use]
+    pub fn any_hit(&self, ray: &Ray) -> bool {
+        self.any_hit_where(ray, |_| true)
+    }
+
+    /// Whether the ray has a hit that `keep` accepts.
+    #[must_use]
+    pub fn any_hit_where(&self, ray: &Ray, keep: impl FnMut(&Hit) -> bool) -> bool {
+        let Some(ray) = ray.prepare() else { return false };
+        let mut any = Where::new(Any::new(&ray), keep);
+        self.search(&ray, &mut any);
+        any.into_inner().found()
+    }
+
+    /// All hits of the ray in order, found eight at a time; without heap, and paid only as far as it is read.
+    #[must_use]
+    pub fn hits(&self, ray: &Ray) -> Hits<'_, A, P> {
+        Hits::new(self, ray)
+    }
+
+    /// Replaces the contents of `hits` by the first hits of the ray, in order, as many as its capacity holds.
+    ///
+    /// ```
+    /// # use hitscan::{List, Mesh, Ray, Scene, glam::Vec3};
+    /// # let vertices = [Vec3::ZERO, Vec3::X, Vec3::Y];
+    /// # let mesh = Mesh::new(&vertices, &[[0_u16, 1, 2], [0, 1, 2], [0, 1, 2]])?;
+    /// # let scene = Scene::new(List::new(&mesh)?, &mesh)?;
+    /// let mut first_two: heapless::Vec<_, 2> = heapless::Vec::new();
+    /// scene.nearest_hits(&Ray::new(Vec3::new(0.2, 0.2, -1.0), Vec3::Z), &mut first_two);
+    /// assert_eq!((first_two[0].primitive, first_two[1].primitive), (0, 1));
+    /// # Ok::<(), hitscan::Error>(())
+    /// ```
+    pub fn nearest_hits(&self, ray: &Ray, hits: &mut heapless::VecView<Hit>) {
+        hits.clear();
+        if let Some(ray) = ray.prepare() {
+            self.search(&ray, &mut Nearest::new(start_of(&ray), end_of(&ray), hits));
+        }
+    }
+
+    /// The closest hit, to be looked for a few nodes at a time.
+    #[must_use]
+    pub fn begin(&self, ray: &Ray) -> PausedQuery<'_, A, P> {
+        PausedQuery::new(self, ray)
+    }
+
+    /// Offers the hits of the ray, leaf by leaf, until `collector` has enough. All queries that need not pause are this.
+    pub(crate) fn search<C: Collector>(&self, ray: &PreparedRay, collector: &mut C) {
+        let mut traversal = self.accelerator.traverse(ray);
+        while let Some(leaf) = traversal.next_leaf(ray, collector.until().t) {
+            if self.offer(leaf, ray, collector) {
+                return;
+            }
+        }
+    }
+
+    /// Offers the hits with the primitives of a leaf; whether `collector` has enough.
+    #[inline(always)]
+    pub(crate) fn offer<C: Collector>(
+        &self,
+        leaf: impl Iterator<Item = u32>,
+        ray: &PreparedRay,
+        collector: &mut C,
+    ) -> bool {
+        for index in leaf {
+            let mut from = collector.from();
+            while let Some(hit) = self.intersect(index, ray, Span::new(from, collector.until())) {
+                match collector.take(hit) {
+                    Next::Primitive => break,
+                    Next::Hit => from = Hit { primitive: hit.primitive.saturating_add(1), ..hit },
+                    Next::Nothing => return true,
+                }
+            }
+        }
+        false
+    }
+
+    #[inline(always)]
+    fn intersect(&self, index: u32, ray: &PreparedRay, span: Span) -> Option<Hit> {
+        if self.primitives.mask(index) & ray.ray().mask == 0 {
+            return None;
+        }
+        let span =
+            if self.primitives.is_certified(index) { span } else { span.within(&self.primitives.bounds(index), ray)? };
+        self.primitives.intersect(index, ray, &span)
+    }
+}
