@@ -15,11 +15,16 @@ pub use scene::Scene;
 pub mod accel;
 pub mod arena;
 pub mod asset;
+#[cfg(feature = "graphics")]
+pub mod display;
 pub mod error;
 pub mod geometry;
 mod math;
+#[cfg(feature = "std")]
+pub mod parallel;
 pub mod primitives;
 pub mod query;
+pub mod render;
 pub mod scene;
 #[cfg(test)]
 mod testing;

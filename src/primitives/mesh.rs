@@ -2,7 +2,7 @@ use core::fmt;
 
 use glam::{Vec2, Vec3};
 
-use super::{Hit, Primitives, Span, Surface, surface::unit};
+use super::{Hit, Primitives, Span, Surface, unit};
 use crate::geometry::{Aabb, PreparedRay, Ray, Triangle, in_range};
 
 /// The corners of triangles: three vertex numbers each, in 16 bits where they fit.

@@ -15,6 +15,7 @@ pub use hit::{Hit, Span};
 pub use mesh::{Indices, Mesh, MeshError, Sides};
 pub use spheres::{SphereError, Spheres};
 pub use surface::Surface;
+pub(crate) use surface::unit;
 
 use crate::geometry::{Aabb, PreparedRay, Ray};
 

@@ -2,7 +2,7 @@ use core::fmt;
 
 use glam::{Vec2, Vec3};
 
-use super::{Hit, Primitives, Span, Surface, surface::unit};
+use super::{Hit, Primitives, Span, Surface, unit};
 use crate::geometry::{Aabb, PreparedRay, Ray, Sphere};
 
 /// A sphere's centre is not finite, its radius is not above 0, or its bounds exceed

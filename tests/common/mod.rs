@@ -1,7 +1,12 @@
 //! What the tests share: random numbers, adversarial scenes and rays.
 #![allow(dead_code, missing_docs)]
 
-use hitscan::{Ray, glam::Vec3};
+use hitscan::{Hit, Ray, glam::Vec3};
+
+/// A hit for comparisons that tell -0 from 0.
+pub fn bits(hit: Option<Hit>) -> Option<(u32, u32)> {
+    hit.map(|hit| (hit.t.to_bits(), hit.primitive))
+}
 
 /// A small generator of reproducible numbers (xorshift64*, Vigna 2016).
 pub struct Random(u64);

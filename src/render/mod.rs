@@ -1,0 +1,22 @@
+//! Pictures: a camera's rays, shaded by the lecture-book terms, tile by tile.
+//!
+//! A [`Renderer`] holds no pixels. It is asked for them: one [`pixel`](Renderer::pixel), the colours of a
+//! [`Tile`] as an iterator, or a tile filled into a slice; threads, displays and network nodes all use the same tiles.
+
+mod camera;
+mod caster;
+mod color;
+mod light;
+mod material;
+mod renderer;
+mod shade;
+mod tile;
+
+pub use camera::Camera;
+pub use caster::Caster;
+pub use color::Color;
+pub use light::Light;
+pub use material::{Material, Materials, Numbers};
+pub use renderer::{Renderer, TooShort};
+pub use shade::Terms;
+pub use tile::{Tile, Tiles};
