@@ -3,6 +3,7 @@
 use core::fmt;
 
 use crate::{
+    accel::kdtree::KdTreeError,
     arena::Full,
     asset::AssetError,
     geometry::Singular,
@@ -97,6 +98,8 @@ any_of! {
     Mismatch(Mismatch),
     /// An asset.
     Asset(AssetError),
+    /// The words of a kD-tree.
+    KdTree(KdTreeError),
     /// A transform.
     Transform(Singular),
 }

@@ -4,6 +4,8 @@ use core::fmt;
 
 use crate::{
     accel::{Accelerator, Traversal},
+    asset::{Asset, Stored},
+    error::Error,
     geometry::{Aabb, PreparedRay, Ray},
     primitives::{Hit, Primitives, Span, Surface},
     query::{Any, Closest, Collector, Hits, Nearest, Next, PausedQuery, Where, end_of, start_of},
@@ -35,6 +37,22 @@ impl core::error::Error for Mismatch {}
 pub struct Scene<A, P> {
     accelerator: A,
     primitives: P,
+}
+
+impl<'a> Asset<'a> {
+    /// The scene of the structure and the primitives that it holds; both are checked in full, and only what is named is
+    /// linked into the program.
+    ///
+    /// # Errors
+    ///
+    /// What is wrong with the sections, or that there are none.
+    pub fn scene<A, P>(&self) -> Result<Scene<A, P>, Error>
+    where
+        A: Accelerator + Stored<'a>,
+        P: Primitives + Stored<'a>,
+    {
+        Ok(Scene::new(self.read()?, self.read()?)?)
+    }
 }
 
 impl<A: Accelerator, P: Primitives> Scene<A, P> {

@@ -155,6 +155,28 @@ fn test(folder: &Path, name: &str) -> Verdict {
     verdict
 }
 
+#[test]
+fn the_judge_convicts() {
+    let hit = |t, primitive| Some(Hit { t, primitive });
+    let ray = Ray::new(Vec3::ZERO, Vec3::Z);
+    let judge = |flags, hit| {
+        let truth = Truth { t: 2.0, range: [2.0, 2.5], primitive: 7, ties: 1, flags };
+        let mut v = Verdict::default();
+        v.judge(&truth, &ray, hit, 1.0e-7);
+        [v.certain, v.faults, v.leaks, v.wrong_primitives, v.loose]
+    };
+    let certain = Truth::HIT | Truth::CERTAIN;
+    assert_eq!(judge(certain, hit(2.0001, 7)), [1, 0, 0, 0, 0]);
+    assert_eq!(judge(certain, hit(2.0, 8)), [1, 0, 0, 1, 0]);
+    assert_eq!(judge(certain, hit(2.001, 7)), [1, 1, 1, 0, 0]);
+    assert_eq!(judge(certain, hit(1.999, 7)), [1, 1, 0, 0, 0]);
+    assert_eq!(judge(certain, None), [1, 1, 1, 0, 0]);
+    assert_eq!(judge(Truth::CERTAIN, hit(2.0, 7)), [1, 1, 0, 0, 0]);
+    assert_eq!(judge(Truth::HIT, hit(2.25, 8)), [0; 5]);
+    assert_eq!(judge(Truth::HIT, hit(2.6, 7)), [0, 0, 0, 0, 1]);
+    assert_eq!(judge(Truth::HIT, None), [0, 0, 0, 0, 1]);
+}
+
 /// The names of all meshes, the largest first.
 fn meshes(folder: &Path) -> Vec<String> {
     let mut files: Vec<(u64, PathBuf)> = fs::read_dir(folder)

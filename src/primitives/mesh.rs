@@ -3,7 +3,11 @@ use core::fmt;
 use glam::{Vec2, Vec3};
 
 use super::{Hit, Primitives, Span, Surface, unit};
-use crate::geometry::{Aabb, PreparedRay, Ray, Triangle, in_range};
+use crate::{
+    asset::{Asset, AssetError, Kind, Stored},
+    error::Error,
+    geometry::{Aabb, PreparedRay, Ray, Triangle, in_range},
+};
 
 /// The corners of triangles: three vertex numbers each, in 16 bits where they fit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -260,6 +264,33 @@ impl Primitives for Mesh<'_> {
 
     fn clip(&self, index: u32, cell: &Aabb) -> Option<Aabb> {
         self.triangle(index).clip(cell)
+    }
+}
+
+/// The sections of vertices and of indices.
+impl<'a> Stored<'a> for Mesh<'a> {
+    fn read(asset: &Asset<'a>) -> Result<Self, Error> {
+        let words = asset.section(Kind::Vertices)?;
+        let shape = |kind, words: &[u32]| AssetError::Shape { kind, words: words.len() };
+        let vertices: &[Vec3] = bytemuck::try_cast_slice(words).map_err(|_| shape(Kind::Vertices, words))?;
+        let indices = match asset.section(Kind::NarrowIndices) {
+            Ok(words) => {
+                let error = shape(Kind::NarrowIndices, words);
+                let (&count, words) = words.split_first().ok_or(error)?;
+                let halves: &[u16] = bytemuck::try_cast_slice(words).map_err(|_| error)?;
+                let used = (count as usize).checked_mul(3).ok_or(error)?;
+                if used.next_multiple_of(2) != halves.len() {
+                    return Err(error.into());
+                }
+                let halves = halves.get(..used).ok_or(error)?;
+                Indices::Narrow(bytemuck::try_cast_slice(halves).map_err(|_| error)?)
+            }
+            Err(_) => {
+                let words = asset.section(Kind::WideIndices)?;
+                Indices::Wide(bytemuck::try_cast_slice(words).map_err(|_| shape(Kind::WideIndices, words))?)
+            }
+        };
+        Ok(Self::new(vertices, indices)?)
     }
 }
 

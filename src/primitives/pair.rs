@@ -1,5 +1,9 @@
 use super::{Hit, Primitives, Span, Surface};
-use crate::geometry::{Aabb, PreparedRay, Ray};
+use crate::{
+    asset::{Asset, Stored},
+    error::Error,
+    geometry::{Aabb, PreparedRay, Ray},
+};
 
 /// Two collections as one: the numbers of the second follow those of the first.
 ///
@@ -65,5 +69,11 @@ impl<A: Primitives, B: Primitives> Primitives for (A, B) {
             None => self.0.clip(index, cell),
             Some(index) => self.1.clip(index, cell),
         }
+    }
+}
+
+impl<'a, A: Stored<'a>, B: Stored<'a>> Stored<'a> for (A, B) {
+    fn read(asset: &Asset<'a>) -> Result<Self, Error> {
+        Ok((A::read(asset)?, B::read(asset)?))
     }
 }

@@ -3,7 +3,11 @@ use core::fmt;
 use glam::{Vec2, Vec3};
 
 use super::{Hit, Primitives, Span, Surface, unit};
-use crate::geometry::{Aabb, PreparedRay, Ray, Sphere};
+use crate::{
+    asset::{Asset, AssetError, Kind, Stored},
+    error::Error,
+    geometry::{Aabb, PreparedRay, Ray, Sphere},
+};
 
 /// A sphere's centre is not finite, its radius is not above 0, or its bounds exceed
 /// [`MAX_COORDINATE`](crate::geometry::MAX_COORDINATE).
@@ -83,5 +87,14 @@ impl Primitives for Spheres<'_> {
             front: ray.direction.dot(normal) < 0.0,
             error: magnitude.max_element() * (16.0 / 16_777_216.0),
         }
+    }
+}
+
+/// The section of spheres.
+impl<'a> Stored<'a> for Spheres<'a> {
+    fn read(asset: &Asset<'a>) -> Result<Self, Error> {
+        let words = asset.section(Kind::Spheres)?;
+        let error = AssetError::Shape { kind: Kind::Spheres, words: words.len() };
+        Ok(Self::new(bytemuck::try_cast_slice(words).map_err(|_| error)?)?)
     }
 }

@@ -1,5 +1,10 @@
 use glam::Vec3;
 
+use crate::{
+    asset::{Asset, AssetError, Kind, Stored},
+    error::Error,
+};
+
 /// How a surface answers light. Phong, *Illumination for computer generated pictures*, 1975.
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
@@ -90,5 +95,27 @@ impl<'a> Materials<'a> {
 impl Default for Materials<'_> {
     fn default() -> Self {
         Self { palette: &[], numbers: Numbers::First }
+    }
+}
+
+/// The sections of materials and, unless all primitives are of the first, of their numbers.
+impl<'a> Stored<'a> for Materials<'a> {
+    fn read(asset: &Asset<'a>) -> Result<Self, Error> {
+        let words = asset.section(Kind::Materials)?;
+        let shape = |kind, words: &[u32]| AssetError::Shape { kind, words: words.len() };
+        let palette = bytemuck::try_cast_slice(words).map_err(|_| shape(Kind::Materials, words))?;
+        let numbers = match asset.section(Kind::MaterialNumbers) {
+            Err(_) => Numbers::First,
+            Ok(words) => {
+                let error = shape(Kind::MaterialNumbers, words);
+                let (&count, words) = words.split_first().ok_or(error)?;
+                let halves: &[u16] = bytemuck::try_cast_slice(words).map_err(|_| error)?;
+                if (count as usize).next_multiple_of(2) != halves.len() {
+                    return Err(error.into());
+                }
+                Numbers::Wide(halves.get(..count as usize).ok_or(error)?)
+            }
+        };
+        Ok(Self::new(palette, numbers))
     }
 }

@@ -1,14 +1,13 @@
 use std::{collections::HashMap, fs, path::Path};
 
-use hitscan::{geometry::Aabb, glam::Vec3, primitives::Indices};
+use hitscan::{glam::Vec3, primitives::Indices};
 
 /// Triangles over shared vertices, with numbers of 16 bits where they fit.
 #[derive(Debug)]
 pub struct Mesh {
     /// What the table calls it.
     pub name: String,
-    /// The vertices.
-    pub vertices: Vec<Vec3>,
+    vertices: Vec<Vec3>,
     corners: Corners,
 }
 
@@ -57,18 +56,13 @@ impl Mesh {
     }
 
     /// The same as hitscan sees it.
-    pub fn view(&self) -> Result<hitscan::Mesh<'_>, String> {
-        hitscan::Mesh::new(&self.vertices, self.indices()).map_err(|error| format!("{}: {error}", self.name))
+    pub fn view(&self) -> Result<hitscan::Mesh<'_>, hitscan::Error> {
+        Ok(hitscan::Mesh::new(&self.vertices, self.indices())?)
     }
 
     /// The corners of all triangles.
     pub fn triangles(&self) -> impl Iterator<Item = [Vec3; 3]> {
         (0..self.len() as u32).filter_map(|number| Some(self.indices().get(number)?.map(|v| self.vertices[v as usize])))
-    }
-
-    /// The box around all triangles.
-    pub fn bounds(&self) -> Aabb {
-        Aabb::around(self.triangles().flatten())
     }
 
     fn indices(&self) -> Indices<'_> {

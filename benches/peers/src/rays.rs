@@ -20,7 +20,7 @@ pub enum Query {
 /// Where the rays of a set come from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// From a camera that sees the whole model.
+    /// From a camera.
     Primary,
     /// From where the primary rays hit, in directions distributed as a matte surface scatters light.
     Diffuse,
@@ -29,9 +29,6 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// All of them.
-    pub const ALL: [Self; 3] = [Self::Primary, Self::Diffuse, Self::Shadow];
-
     /// What is asked of them.
     pub const fn query(self) -> Query {
         match self {
@@ -60,38 +57,49 @@ pub struct RaySet {
     pub rays: Vec<Ray>,
 }
 
-/// A set of each kind: `count` primary rays, and as many of the others as of these hit.
-pub fn all<A: Accelerator, P: Primitives>(scene: &Scene<A, P>, count: usize) -> [RaySet; 3] {
+/// Where the camera stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum View {
+    /// So far away that it sees the whole model.
+    Outside,
+    /// In the middle, looking all around: for buildings.
+    Inside,
+}
+
+impl View {
+    /// The eye and the directions through the pixels of a square picture.
+    fn camera(self, bounds: &Aabb, side: u32) -> (Vec3, Vec<Vec3>) {
+        let place = |i: u32| (i as f32 + 0.5) / side as f32;
+        let pixels = (0..side).flat_map(|y| (0..side).map(move |x| (place(x), place(y))));
+        match self {
+            Self::Outside => {
+                let ahead = Vec3::new(-0.5, -0.45, -0.74).normalize();
+                let right = ahead.cross(Vec3::Y).normalize();
+                let up = right.cross(ahead);
+                // Two radii from the sphere around the model, which is then 60 degrees wide.
+                let half = 0.577;
+                let through = |(x, y)| ahead + (right * (x * 2.0 - 1.0) + up * (1.0 - y * 2.0)) * half;
+                (bounds.center() - ahead * bounds.size().length(), pixels.map(through).map(Vec3::normalize).collect())
+            }
+            Self::Inside => (bounds.center(), pixels.map(|(x, y)| on_sphere(x, 1.0 - y * 2.0)).collect()),
+        }
+    }
+}
+
+/// A set of each kind: about `count` primary rays, and as many of the others as of these hit.
+pub fn all<A: Accelerator, P: Primitives>(scene: &Scene<A, P>, view: View, count: usize) -> [RaySet; 3] {
     let bounds = scene.bounds();
-    let (eye, primary) = camera(&bounds, count);
+    let (eye, directions) = view.camera(&bounds, (count as f32).sqrt() as u32);
+    let primary: Vec<Ray> = directions.into_iter().map(|direction| Ray::new(eye, direction)).collect();
     let offset = bounds.size().length() * 1.0e-5;
     let hits: Vec<(Vec3, Vec3)> = primary.iter().filter_map(|ray| surface(scene, ray, offset)).collect();
     let mut random = Random::new(1);
     let diffuse = hits.iter().map(|&(point, normal)| Ray::new(point, scatter(normal, &mut random))).collect();
     // Beside the camera.
-    let light = eye + (eye - bounds.center()).yzx() * 0.5;
+    let light = eye + (eye - bounds.center()).yzx() * 0.5 + bounds.size() * 0.05;
     let shadow = hits.iter().map(|&(point, _)| Ray::between(point, light)).collect();
     [(Kind::Primary, primary), (Kind::Diffuse, diffuse), (Kind::Shadow, shadow)]
         .map(|(kind, rays)| RaySet { kind, rays })
-}
-
-/// A camera's eye and one ray per pixel of a square picture that holds the sphere around `bounds`.
-fn camera(bounds: &Aabb, count: usize) -> (Vec3, Vec<Ray>) {
-    let center = bounds.center();
-    let radius = bounds.size().length() / 2.0;
-    let ahead = Vec3::new(-0.5, -0.45, -0.74).normalize();
-    let eye = center - ahead * (radius * 2.0);
-    let right = ahead.cross(Vec3::Y).normalize();
-    let up = right.cross(ahead);
-    // The half angle of the sphere seen from two radii away is 30 degrees.
-    let half = 0.577;
-    let side = (count as f32).sqrt() as u32;
-    let pixel = |i: u32| ((i as f32 + 0.5) / side as f32 * 2.0 - 1.0) * half;
-    let rays = (0..side)
-        .flat_map(|y| (0..side).map(move |x| (x, y)))
-        .map(|(x, y)| Ray::new(eye, (ahead + right * pixel(x) - up * pixel(y)).normalize()))
-        .collect();
-    (eye, rays)
 }
 
 /// The point `offset` before the surface that `ray` hits, and the normal there.
@@ -103,9 +111,13 @@ fn surface<A: Accelerator, P: Primitives>(scene: &Scene<A, P>, ray: &Ray, offset
 
 /// A direction around `normal`, as likely as the cosine of the angle between the two.
 fn scatter(normal: Vec3, random: &mut Random) -> Vec3 {
-    let z = random.signed();
-    let (sin, cos) = (TAU * random.unit()).sin_cos();
+    // Not quite 1, so that the sum is never zero.
+    (normal + on_sphere(random.unit(), random.signed()) * 0.9999).normalize()
+}
+
+/// The unit vector at this height, after this part of a turn; evenly spread where both are.
+fn on_sphere(turn: f32, z: f32) -> Vec3 {
+    let (sin, cos) = (TAU * turn).sin_cos();
     let radius = (1.0 - z * z).sqrt();
-    let sphere = Vec3::new(radius * cos, radius * sin, z);
-    (normal + sphere * 0.9999).normalize()
+    Vec3::new(radius * cos, radius * sin, z)
 }

@@ -20,7 +20,8 @@ use self::node::{Kind, Node};
 use super::{Accelerator, leaf::References};
 use crate::{
     arena::Arena,
-    error::BuildError,
+    asset::{Asset, Stored},
+    error::{BuildError, Error},
     geometry::{Aabb, PreparedRay},
     primitives::Primitives,
 };
@@ -172,5 +173,12 @@ impl<'a> Accelerator for KdTree<'a> {
     #[inline]
     fn traverse(&self, ray: &PreparedRay) -> KdTraversal<'a> {
         KdTraversal::new(self, ray)
+    }
+}
+
+/// The section of a kD-tree.
+impl<'a> Stored<'a> for KdTree<'a> {
+    fn read(asset: &Asset<'a>) -> Result<Self, Error> {
+        Ok(Self::open(asset.section(crate::asset::Kind::KdTree)?)?)
     }
 }

@@ -112,8 +112,9 @@ impl<'a> KdTree<'a> {
 
     /// One pass in order: right children are the nodes after the left subtrees, so each node has exactly one parent.
     fn check_nodes(&self) -> Result<(), KdTreeError> {
-        let mut pending: heapless::Vec<u32, MAX_DEPTH> = heapless::Vec::new();
-        let mut references = 0_u32;
+        // Right children to come, with their depths.
+        let mut pending: heapless::Vec<(u32, u32), MAX_DEPTH> = heapless::Vec::new();
+        let (mut references, mut depth) = (0_u32, 0_u32);
         let mut ended = false;
         for (index, node) in self.nodes.iter().enumerate() {
             let error = |reason| KdTreeError { word: HEADER_WORDS + index * Node::WORDS, reason };
@@ -125,7 +126,8 @@ impl<'a> KdTree<'a> {
                     if !position.is_finite() {
                         return Err(error(Reason::Plane));
                     }
-                    if pending.len() >= self.depth as usize || pending.push(right).is_err() {
+                    depth += 1;
+                    if depth > self.depth || pending.push((right, depth)).is_err() {
                         return Err(error(Reason::Depth));
                     }
                 }
@@ -140,7 +142,7 @@ impl<'a> KdTree<'a> {
                         references = references.checked_add(count).ok_or(error(Reason::References))?;
                     }
                     match pending.pop() {
-                        Some(right) if right as usize == index + 1 => {}
+                        Some((right, level)) if right as usize == index + 1 => depth = level,
                         Some(_) => return Err(error(Reason::Link)),
                         None => ended = true,
                     }

@@ -5,7 +5,7 @@ mod obvhs;
 
 pub use self::{
     hitscan::{Kd, Preset},
-    obvhs::{Bvh2Slow, CwBvhVerySlow},
+    obvhs::{Bvh2Slow, CwBvhVerySlow, obvhs_triangles},
 };
 use ::hitscan::Ray;
 

@@ -10,10 +10,10 @@ use obvhs::{
 };
 
 use super::{Engine, shadow};
-use crate::mesh::Mesh;
+use crate::{clock::time, mesh::Mesh};
 
 /// The mesh as obvhs' builders want it.
-pub fn triangles(mesh: &Mesh) -> Vec<Triangle> {
+pub fn obvhs_triangles(mesh: &Mesh) -> Vec<Triangle> {
     mesh.triangles()
         .map(|corners| corners.map(|corner| corner.to_array().into()))
         .map(|[v0, v1, v2]| Triangle { v0, v1, v2 })
@@ -32,18 +32,19 @@ fn ray(ray: &hitscan::Ray) -> Ray {
 macro_rules! engine {
     ($(#[$doc:meta])* $engine:ident, $bvh:ty, $build:ident, $preset:ident, $name:literal) => {
         $(#[$doc])*
-        #[expect(missing_debug_implementations, reason = "obvhs' triangles have none")]
         pub struct $engine {
             bvh: $bvh,
             triangles: Vec<RtTriangle>,
         }
 
         impl $engine {
-            /// Builds it.
-            pub fn new(triangles: &[Triangle]) -> Self {
-                let bvh = $build(triangles, BvhBuildParams::$preset(), &mut Duration::default());
+            /// Builds it; the triangles put in order afterwards do not count.
+            pub fn build(triangles: &[Triangle]) -> (Self, Duration) {
+                let build = || $build(triangles, BvhBuildParams::$preset(), &mut Duration::default());
+                let (_, first) = time(build);
+                let (bvh, second) = time(build);
                 let triangles = in_order(triangles, &bvh.primitive_indices);
-                Self { bvh, triangles }
+                (Self { bvh, triangles }, first.min(second))
             }
         }
 

@@ -1,0 +1,74 @@
+use core::fmt;
+
+/// What a section holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum Kind {
+    /// Positions, three `f32` each.
+    Vertices,
+    /// How many triangles, then three `u16` each.
+    NarrowIndices,
+    /// Triangles, three `u32` each.
+    WideIndices,
+    /// Spheres: centre and radius, four `f32` each.
+    Spheres,
+    /// A kD-tree, as [`KdTree::as_words`](crate::KdTree::as_words) gives it.
+    KdTree,
+    /// Materials: eight `f32` each.
+    Materials,
+    /// How many primitives, then a material number of 16 bits each.
+    MaterialNumbers,
+    /// Something that this version does not know.
+    Unknown(u32),
+}
+
+impl Kind {
+    const KNOWN: [Self; 7] = [
+        Self::Vertices,
+        Self::NarrowIndices,
+        Self::WideIndices,
+        Self::Spheres,
+        Self::KdTree,
+        Self::Materials,
+        Self::MaterialNumbers,
+    ];
+
+    /// Four letters in the order of the bytes.
+    pub(crate) const fn code(self) -> u32 {
+        match self {
+            Self::Vertices => u32::from_le_bytes(*b"vert"),
+            Self::NarrowIndices => u32::from_le_bytes(*b"idx2"),
+            Self::WideIndices => u32::from_le_bytes(*b"idx4"),
+            Self::Spheres => u32::from_le_bytes(*b"sphr"),
+            Self::KdTree => u32::from_le_bytes(*b"kdtr"),
+            Self::Materials => u32::from_le_bytes(*b"matl"),
+            Self::MaterialNumbers => u32::from_le_bytes(*b"matn"),
+            Self::Unknown(code) => code,
+        }
+    }
+
+    pub(crate) fn from_code(code: u32) -> Self {
+        Self::KNOWN.into_iter().find(|kind| kind.code() == code).unwrap_or(Self::Unknown(code))
+    }
+
+    /// The version that this library writes, and the only one that it reads.
+    pub(crate) const fn version(self) -> u32 {
+        1
+    }
+}
+
+impl fmt::Display for Kind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Vertices => f.write_str("vertices"),
+            Self::NarrowIndices => f.write_str("16-bit indices"),
+            Self::WideIndices => f.write_str("32-bit indices"),
+            Self::Spheres => f.write_str("spheres"),
+            Self::KdTree => f.write_str("kD-tree"),
+            Self::Materials => f.write_str("materials"),
+            Self::MaterialNumbers => f.write_str("material numbers"),
+            Self::Unknown(code) => write!(f, "unknown ({code:#010x})"),
+        }
+    }
+}

@@ -1,0 +1,141 @@
+//! Baking (feature `alloc`): structures and assets made on a host, for anywhere.
+
+use alloc::{vec, vec::Vec};
+
+use crate::{
+    accel::kdtree::{KdTree, Options},
+    arena::{Arena, Full},
+    asset::{ALIGNMENT, BYTE_ORDER, CHECKSUM_WORD, ENTRY_WORDS, HEADER_WORDS, Kind, MAGIC, VERSION, checksum},
+    error::BuildError,
+    geometry::Sphere,
+    primitives::{Indices, Mesh, Primitives},
+    render::{Material, Numbers},
+};
+
+/// Builds a kD-tree in as much memory as that takes; its words are for [`KdTree::open`] or [`Baker::kd_tree`].
+///
+/// ```
+/// use hitscan::{KdTree, Mesh, bake, glam::Vec3, kdtree::Options};
+/// let vertices = [Vec3::ZERO, Vec3::X, Vec3::Y];
+/// let mesh = Mesh::new(&vertices, &[[0_u16, 1, 2]])?;
+/// let words = bake::kd_tree(&mesh, &Options::fast())?;
+/// assert_eq!(KdTree::open(&words)?.node_count(), 1);
+/// # Ok::<(), hitscan::Error>(())
+/// ```
+///
+/// # Errors
+///
+/// Those of [`KdTree::build`], except that memory does not run out.
+pub fn kd_tree<P: Primitives + ?Sized>(primitives: &P, options: &Options) -> Result<Vec<u32>, BuildError> {
+    let most = KdTree::words(primitives.len() as usize, options);
+    // Usually a fraction of what always suffices is enough, and untouched memory would still be cleared.
+    let mut size = most.min(4096 + primitives.len() as usize * 24);
+    loop {
+        let mut memory = vec![0; size];
+        let used = match KdTree::build(primitives, &mut Arena::new(&mut memory), options) {
+            Ok(tree) => tree.as_words().len(),
+            Err(BuildError::Full(Full { at_least, .. })) if size < most => {
+                size = (size * 2).max(at_least).min(most);
+                continue;
+            }
+            Err(error) => return Err(error),
+        };
+        memory.truncate(used);
+        memory.shrink_to_fit();
+        return Ok(memory);
+    }
+}
+
+/// Puts sections together into an asset: the same bytes on every host. See [`Asset`](crate::asset::Asset).
+#[derive(Clone, Debug, Default)]
+pub struct Baker {
+    sections: Vec<(Kind, Vec<u32>)>,
+}
+
+impl Baker {
+    /// An asset without sections.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self { sections: Vec::new() }
+    }
+
+    /// The same with a mesh: its vertices and its indices, these in 16 bits if they fit.
+    #[must_use]
+    pub fn mesh(self, mesh: &Mesh<'_>) -> Self {
+        let vertices = mesh.vertices().iter().flat_map(|v| v.to_array()).map(f32::to_bits).collect();
+        let (indices, count) = (mesh.indices(), mesh.len());
+        let corners = (0..count).flat_map(|triangle| indices.get(triangle)).flatten();
+        let narrow = matches!(indices, Indices::Narrow(_)) || mesh.vertices().len() <= 1 << 16;
+        let section = if narrow {
+            (Kind::NarrowIndices, counted_halves(count, corners))
+        } else {
+            (Kind::WideIndices, corners.collect())
+        };
+        self.section(Kind::Vertices, vertices).section(section.0, section.1)
+    }
+
+    /// The same with spheres.
+    #[must_use]
+    pub fn spheres(self, spheres: &[Sphere]) -> Self {
+        let words = bytemuck::cast_slice(spheres).to_vec();
+        self.section(Kind::Spheres, words)
+    }
+
+    /// The same with a kD-tree.
+    #[must_use]
+    pub fn kd_tree(self, tree: &KdTree<'_>) -> Self {
+        self.section(Kind::KdTree, tree.as_words().to_vec())
+    }
+
+    /// The same with materials.
+    #[must_use]
+    pub fn materials(self, palette: &[Material], numbers: Numbers<'_>) -> Self {
+        let baker = self.section(Kind::Materials, bytemuck::cast_slice(palette).to_vec());
+        let halves = match numbers {
+            Numbers::First => return baker,
+            Numbers::Narrow(numbers) => {
+                counted_halves(numbers.len() as u32, numbers.iter().map(|&number| u32::from(number)))
+            }
+            Numbers::Wide(numbers) => {
+                counted_halves(numbers.len() as u32, numbers.iter().map(|&number| u32::from(number)))
+            }
+        };
+        baker.section(Kind::MaterialNumbers, halves)
+    }
+
+    fn section(mut self, kind: Kind, words: Vec<u32>) -> Self {
+        self.sections.push((kind, words));
+        self
+    }
+
+    /// The asset in words; in a file they are little-endian.
+    ///
+    /// # Panics
+    ///
+    /// If it has 2^32 words or more.
+    #[must_use]
+    pub fn finish(self) -> Vec<u32> {
+        let number = |n: usize| u32::try_from(n).expect("an asset has less than 2^32 words");
+        let mut words = vec![MAGIC, BYTE_ORDER, VERSION, 0, 0, number(self.sections.len())];
+        let mut end = HEADER_WORDS + self.sections.len() * ENTRY_WORDS;
+        for (kind, contents) in &self.sections {
+            let offset = end.next_multiple_of(ALIGNMENT);
+            words.extend([kind.code(), kind.version(), number(offset), number(contents.len())]);
+            end = offset + contents.len();
+        }
+        for (_, contents) in &self.sections {
+            words.resize(words.len().next_multiple_of(ALIGNMENT), 0);
+            words.extend(contents);
+        }
+        words[3] = number(words.len());
+        words[CHECKSUM_WORD] = checksum(&words);
+        words
+    }
+}
+
+/// A count and as many numbers of 16 bits, two per word.
+fn counted_halves(count: u32, numbers: impl Iterator<Item = u32>) -> Vec<u32> {
+    let numbers: Vec<u32> = numbers.collect();
+    let pairs = numbers.chunks(2).map(|pair| pair[0] | pair.get(1).map_or(0, |high| high << 16));
+    core::iter::once(count).chain(pairs).collect()
+}

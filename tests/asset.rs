@@ -1,0 +1,219 @@
+//! Assets: what is baked is read back, and no bytes make the reader panic or a walk run on.
+#![cfg(feature = "alloc")]
+#![allow(missing_docs)]
+
+mod common;
+
+use common::{Random, adversarial_mesh, adversarial_ray, point};
+use hitscan::{
+    Error, KdTree, Mesh, Ray, Scene,
+    asset::{Asset, AssetError, Kind},
+    bake::{self, Baker},
+    geometry::Sphere,
+    glam::Vec3,
+    kdtree::{Options, Reason},
+    primitives::Spheres,
+    query::Progress,
+    render::{Material, Materials, Numbers},
+};
+
+/// FNV-1a by words with a rotation, as the format defines it.
+fn checksum(words: &[u32]) -> u32 {
+    let summed = words.iter().enumerate().filter(|(index, _)| *index != 4);
+    summed.fold(0x811c_9dc5, |sum: u32, (_, word)| (sum ^ word).wrapping_mul(0x0100_0193).rotate_left(13))
+}
+
+fn sealed(mut words: Vec<u32>) -> Vec<u32> {
+    words[4] = checksum(&words);
+    words
+}
+
+fn soup(seed: u64, most: usize) -> (Vec<Vec3>, Vec<[u32; 3]>) {
+    adversarial_mesh(&mut Random::new(seed), 2, most)
+}
+
+fn baked(seed: u64, most: usize, options: &Options) -> Vec<u32> {
+    let (vertices, triangles) = soup(seed, most);
+    let mesh = Mesh::new(&vertices, &triangles[..]).unwrap();
+    let tree = bake::kd_tree(&mesh, options).unwrap();
+    Baker::new().mesh(&mesh).kd_tree(&KdTree::open(&tree).unwrap()).finish()
+}
+
+/// Opens everything, and if it opens, walks it: the walk must end within the nodes.
+fn exercise(words: &[u32]) -> Result<(), Error> {
+    let asset = Asset::from_words(words)?;
+    let scene: Scene<KdTree, Mesh> = asset.scene()?;
+    let nodes = scene.accelerator().node_count() as u32;
+    let mut random = Random::new(9);
+    for _ in 0..4 {
+        let ray = Ray::new(point(&mut random, 2), point(&mut random, 2));
+        assert!(matches!(scene.begin(&ray).advance(nodes), Progress::Done(_)), "the walk visits a node twice");
+    }
+    Ok(())
+}
+
+#[test]
+fn what_is_baked_is_read_back() {
+    let (vertices, triangles) = soup(3, 60);
+    let mesh = Mesh::new(&vertices, &triangles[..]).unwrap();
+    let spheres = [Sphere::new(Vec3::ONE, 2.0), Sphere::new(Vec3::ZERO, 0.5)];
+    let both = (mesh, Spheres::new(&spheres).unwrap());
+    let words = bake::kd_tree(&both, &Options::balanced()).unwrap();
+    let tree = KdTree::open(&words).unwrap();
+    let palette = [Material::matte(Vec3::X), Material::default()];
+    let numbers: Vec<u8> = (0..tree_len(&both)).map(|i| (i % 2) as u8).collect();
+    let baker = Baker::new().mesh(&mesh).spheres(&spheres).kd_tree(&tree);
+    let asset_words = baker.materials(&palette, Numbers::Narrow(&numbers)).finish();
+
+    let bytes: &[u8] = bytemuck::cast_slice(&asset_words);
+    let asset = Asset::open(bytes).unwrap();
+    let kinds: Vec<Kind> = asset.sections().map(|section| section.kind).collect();
+    let expected =
+        [Kind::Vertices, Kind::NarrowIndices, Kind::Spheres, Kind::KdTree, Kind::Materials, Kind::MaterialNumbers];
+    assert_eq!(kinds, expected);
+    let scene: Scene<KdTree, (Mesh, Spheres)> = asset.scene().unwrap();
+    let original = Scene::new(tree, &both).unwrap();
+    let mut random = Random::new(5);
+    for _ in 0..20_000 {
+        let ray = adversarial_ray(&mut random, 2, &vertices);
+        assert_eq!(scene.closest_hit(&ray), original.closest_hit(&ray));
+    }
+    let materials: Materials = asset.read().unwrap();
+    assert_eq!(materials.of(0), palette[0]);
+    assert_eq!(materials.of(61 % numbers.len() as u32 | 1), palette[1]);
+}
+
+fn tree_len(primitives: &impl hitscan::Primitives) -> u32 {
+    primitives.len()
+}
+
+#[test]
+fn baking_gives_the_same_bytes_everywhere() {
+    // Coordinates that every target computes alike.
+    let height = |x: usize, z: usize| ((x * 7 + z * 5) % 11) as f32 / 8.0;
+    let vertices: Vec<Vec3> =
+        (0..169).map(|i| Vec3::new((i % 13) as f32, height(i % 13, i / 13), (i / 13) as f32)).collect();
+    let corner = |i: u16| i / 12 * 13 + i % 12;
+    let triangles: Vec<[u16; 3]> = (0..144)
+        .flat_map(|i| [[corner(i), corner(i) + 1, corner(i) + 13], [corner(i) + 1, corner(i) + 14, corner(i) + 13]])
+        .collect();
+    let mesh = Mesh::new(&vertices, &triangles[..]).unwrap();
+    let sums = [Options::small(), Options::balanced(), Options::fast()].map(|options| {
+        let tree = bake::kd_tree(&mesh, &options).unwrap();
+        checksum(&Baker::new().mesh(&mesh).kd_tree(&KdTree::open(&tree).unwrap()).finish())
+    });
+    assert_eq!(sums, SUMS);
+}
+
+/// Of the presets; they change when the format or a preset does.
+const SUMS: [u32; 3] = [220_731_740, 1_233_519_391, 2_719_815_636];
+
+#[test]
+fn every_truncation_and_every_extension_is_refused() {
+    let words = baked(1, 12, &Options::fast());
+    let bytes: Vec<u8> = bytemuck::cast_slice(&words).to_vec();
+    for length in 0..bytes.len() {
+        // Aligned as the whole is.
+        let mut memory = vec![0_u32; length.div_ceil(4)];
+        let copy: &mut [u8] = bytemuck::cast_slice_mut(&mut memory);
+        copy[..length].copy_from_slice(&bytes[..length]);
+        assert!(Asset::open(&copy[..length]).is_err(), "{length}");
+        if length % 4 == 0 && length >= 24 {
+            // Even if the length and the sum were made to fit.
+            let mut words = memory.clone();
+            words[3] = words.len() as u32;
+            assert!(exercise(&sealed(words)).is_err(), "{length}");
+        }
+    }
+    let mut longer = words.clone();
+    longer.push(0);
+    assert!(Asset::from_words(&longer).is_err());
+    longer[3] += 1;
+    assert_eq!(exercise(&sealed(longer)), Err(AssetError::Table { entry: 3 }.into()));
+    assert_eq!(exercise(&words), Ok(()));
+}
+
+#[test]
+fn every_byte_set_to_every_value_is_refused_or_harmless() {
+    let (mut refused, mut harmless) = (0, 0);
+    for seed in 0..6 {
+        let words = baked(seed, 6, &Options { leaf_size: 1 + seed as u32 % 3, ..Options::fast() });
+        for index in 0..words.len() {
+            for shift in [0, 8, 16, 24] {
+                for value in 0..=255 {
+                    let mut damaged = words.clone();
+                    damaged[index] = damaged[index] & !(0xff << shift) | value << shift;
+                    if damaged[index] == words[index] {
+                        continue;
+                    }
+                    assert!(Asset::from_words(&damaged).is_err(), "the checksum sees a change of one word");
+                    match exercise(&sealed(damaged)) {
+                        Ok(()) => harmless += 1,
+                        Err(_) => refused += 1,
+                    }
+                }
+            }
+        }
+    }
+    assert!(refused > 10_000 && harmless > 10_000, "{refused} {harmless}");
+}
+
+#[test]
+fn structured_lies_are_refused() {
+    let words = baked(2, 40, &Options::fast());
+    let asset = Asset::from_words(&words).unwrap();
+    let tree_words = asset.section(Kind::KdTree).unwrap().to_vec();
+    let tree = KdTree::open(&tree_words).unwrap();
+    let reason = |change: &dyn Fn(&mut Vec<u32>)| {
+        let mut words = tree_words.clone();
+        change(&mut words);
+        KdTree::open(&words).map(|_| ()).map_err(|error| error.reason)
+    };
+    assert!(tree.node_count() > 8 && tree.depth() > 2);
+    // Word 10 is the root's plane, word 11 its axis and right child.
+    let right = tree_words[11] >> 2;
+    let link = |number: u32| tree_words[11] & 3 | number << 2;
+    assert_eq!(reason(&|_| {}), Ok(()));
+    for number in [0, 1, right - 1, right + 1, tree.node_count() as u32, (1 << 30) - 1] {
+        assert!(reason(&|words| words[11] = link(number)).is_err(), "a right child at {number}");
+    }
+    for plane in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+        assert_eq!(reason(&|words| words[10] = plane.to_bits()), Err(Reason::Plane));
+    }
+    assert_eq!(reason(&|words| words[3] = tree.depth() - 1), Err(Reason::Depth));
+    assert_eq!(reason(&|words| words[3] = 33), Err(Reason::Depth));
+    assert_eq!(reason(&|words| words[4] = f32::NAN.to_bits()), Err(Reason::Bounds));
+    assert_eq!(reason(&|words| words.swap(4, 7)), Err(Reason::Bounds));
+    assert_eq!(reason(&|words| words[0] += 1), Err(Reason::Length));
+    assert_eq!(reason(&|words| words[1] += 2), Err(Reason::Length));
+    assert_eq!(reason(&|words| words[2] = 1), Err(Reason::Primitive));
+    assert_eq!(reason(&|words| words.push(0)), Err(Reason::Length));
+
+    let with = |index: usize, word: u32| {
+        let mut words = words.clone();
+        words[index] = word;
+        Asset::from_words(&sealed(words)).map(|_| ())
+    };
+    assert!(matches!(with(0, 0), Err(AssetError::Magic { found: 0 })));
+    assert!(matches!(with(0, words[0].swap_bytes()), Err(AssetError::ByteOrder)));
+    assert!(matches!(with(1, 0x0403_0201), Err(AssetError::ByteOrder)));
+    assert!(matches!(with(2, 2), Err(AssetError::Version { kind: None, found: 2, .. })));
+    assert!(matches!(with(7, 9), Err(AssetError::Version { kind: Some(Kind::Vertices), found: 9, .. })));
+    assert!(matches!(with(5, u32::MAX), Err(AssetError::Table { .. })));
+    assert!(matches!(with(8, words[8] + 4), Err(AssetError::Table { entry: 0 })));
+    assert!(matches!(with(9, u32::MAX), Err(AssetError::Table { entry: 0 })));
+    assert!(matches!(asset.section(Kind::Spheres), Err(AssetError::Missing { kind: Kind::Spheres })));
+}
+
+#[test]
+fn bytes_at_odd_addresses_are_refused() {
+    let words = baked(1, 4, &Options::small());
+    let mut memory = vec![0_u32; words.len() + 1];
+    let bytes: &mut [u8] = bytemuck::cast_slice_mut(&mut memory);
+    for offset in 0..4 {
+        let length = words.len() * 4;
+        bytes[offset..offset + length].copy_from_slice(bytemuck::cast_slice(&words));
+        let opened = Asset::open(&bytes[offset..offset + length]).map(|_| ());
+        assert_eq!(opened, if offset == 0 { Ok(()) } else { Err(AssetError::Misaligned) });
+    }
+}
