@@ -16,6 +16,7 @@ pub use ray::{PreparedRay, Ray};
 pub(crate) use ray::{beyond, slack};
 pub use sphere::Sphere;
 pub use transform::{Singular, Transform};
+pub(crate) use triangle::intersect as intersect_triangle;
 pub use triangle::{Crossing, Triangle};
 
 /// The largest coordinate magnitude accepted, 2^126: differences of two such numbers do not overflow.

@@ -133,10 +133,20 @@ impl AxisView {
 pub struct PreparedRay {
     ray: Ray,
     pub(crate) views: [AxisView; 3],
-    /// The axis along which the direction is largest.
-    pub(crate) major: Axis,
-    /// `direction / direction.major` along the two axes after the major one.
-    pub(crate) shear: [f32; 2],
+    pub(crate) shear: Shear,
+}
+
+/// What turns the ray into the third axis: see the triangle's filter.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Shear {
+    /// The axes in cyclic order, the last of which is the major one: along it the direction is largest.
+    pub(crate) axes: [Axis; 3],
+    /// The ray's origin in this order.
+    pub(crate) origin: [f32; 3],
+    /// The direction along the first two over that along the major one.
+    pub(crate) slope: [f32; 2],
+    /// One over the direction along the major one.
+    pub(crate) inverse: f32,
 }
 
 impl PreparedRay {
@@ -160,9 +170,11 @@ impl PreparedRay {
         let views =
             [AxisView::new(o.x, d.x, forward), AxisView::new(o.y, d.y, forward), AxisView::new(o.z, d.z, forward)];
         let inverse = views[major as usize].entry;
-        let first = major.next();
-        let shear = [first.of(d) * inverse, first.next().of(d) * inverse];
-        Some(Self { ray, views, major, shear })
+        let axes = [major.next(), major.next().next(), major];
+        let [first, second, _] = axes;
+        let slope = [first.of(d) * inverse, second.of(d) * inverse];
+        let shear = Shear { axes, origin: axes.map(|axis| axis.of(o)), slope, inverse };
+        Some(Self { ray, views, shear })
     }
 
     /// The ray as it was given, its interval cut to finite numbers.

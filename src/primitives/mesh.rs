@@ -6,7 +6,7 @@ use super::{Hit, Primitives, Span, Surface, unit};
 use crate::{
     asset::{Asset, AssetError, Kind, Stored},
     error::Error,
-    geometry::{Aabb, PreparedRay, Ray, Triangle, in_range},
+    geometry::{Aabb, PreparedRay, Ray, Triangle, in_range, intersect_triangle},
 };
 
 /// The corners of triangles: three vertex numbers each, in 16 bits where they fit.
@@ -228,7 +228,9 @@ impl Primitives for Mesh<'_> {
 
     #[inline(always)]
     fn intersect(&self, index: u32, ray: &PreparedRay, span: &Span) -> Option<Hit> {
-        let crossing = self.triangle(index).intersect(ray, span.t_min(), span.t_max())?;
+        let [a, b, c] = self.indices.get(index)?;
+        let corner = |vertex: u32| self.vertices.get(vertex as usize).map(Vec3::as_ref);
+        let crossing = intersect_triangle([corner(a)?, corner(b)?, corner(c)?], ray, span.t_min(), span.t_max())?;
         if self.sides == Sides::Front && !crossing.front { None } else { span.accept(crossing.t, index) }
     }
 

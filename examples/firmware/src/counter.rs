@@ -1,5 +1,8 @@
 //! Instructions executed, by the board's own clock: QEMU's `-icount` lets every instruction take the same time.
 
+#[cfg(target_arch = "arm")]
+use core::sync::atomic::{AtomicU32, Ordering::Relaxed};
+
 use crate::metal::spin;
 
 /// Counts instructions.
@@ -8,7 +11,7 @@ pub struct Counter {
     /// Ticks for [`SAMPLE`] instructions.
     sample: u64,
     /// Ticks for nothing.
-    idle: u32,
+    idle: u64,
 }
 
 /// Instructions of the loop that tells what a tick is.
@@ -19,14 +22,14 @@ impl Counter {
     pub fn new() -> Self {
         start();
         let ticks = |loops| elapsed(|| spin(loops));
-        Self { sample: u64::from(ticks(SAMPLE / 2 + 1) - ticks(1)), idle: elapsed(|| ()) }
+        Self { sample: ticks(SAMPLE / 2 + 1) - ticks(1), idle: elapsed(|| ()) }
     }
 
-    /// The instructions that `work` took: on Arm at most a few million, and right to one or two.
+    /// The instructions that `work` takes, right to one or two.
     #[inline(always)]
-    pub fn instructions(&self, work: impl FnOnce()) -> u32 {
+    pub fn instructions(&self, work: impl FnOnce()) -> u64 {
         let ticks = elapsed(work).saturating_sub(self.idle);
-        (u64::from(ticks) * u64::from(SAMPLE)).div_ceil(self.sample) as u32
+        (ticks * u64::from(SAMPLE)).div_ceil(self.sample)
     }
 }
 
@@ -37,15 +40,26 @@ impl Default for Counter {
 }
 
 #[inline(always)]
-fn elapsed(work: impl FnOnce()) -> u32 {
+fn elapsed(work: impl FnOnce()) -> u64 {
     let before = now();
     work();
-    now().wrapping_sub(before) & MAX_TICKS
+    now() - before
 }
 
-/// SysTick has 24 bits.
+/// SysTick counts 24 bits down, then begins anew.
 #[cfg(target_arch = "arm")]
-const MAX_TICKS: u32 = 0x00ff_ffff;
+const PERIOD: u32 = 1 << 24;
+
+/// How often SysTick began anew.
+#[cfg(target_arch = "arm")]
+static PERIODS: AtomicU32 = AtomicU32::new(0);
+
+#[cfg(target_arch = "arm")]
+#[cortex_m_rt::exception]
+fn SysTick() {
+    // Not `fetch_add`: Cortex-M0 has none, and nothing interrupts this.
+    PERIODS.store(PERIODS.load(Relaxed) + 1, Relaxed);
+}
 
 /// Starts SysTick at the processor's clock.
 #[cfg(target_arch = "arm")]
@@ -53,27 +67,30 @@ fn start() {
     use cortex_m::{Peripherals, peripheral::syst::SystClkSource};
     let mut syst = Peripherals::take().expect("there is one counter").SYST;
     syst.set_clock_source(SystClkSource::Core);
-    syst.set_reload(MAX_TICKS);
+    syst.set_reload(PERIOD - 1);
     syst.clear_current();
+    syst.enable_interrupt();
     syst.enable_counter();
 }
 
-/// SysTick counts down.
 #[cfg(target_arch = "arm")]
-#[inline(always)]
-fn now() -> u32 {
-    MAX_TICKS - cortex_m::peripheral::SYST::get_current()
+#[inline(never)]
+fn now() -> u64 {
+    loop {
+        let periods = PERIODS.load(Relaxed);
+        let left = cortex_m::peripheral::SYST::get_current();
+        if PERIODS.load(Relaxed) == periods {
+            return u64::from(periods) * u64::from(PERIOD) + u64::from(PERIOD - 1 - left);
+        }
+    }
 }
 
-#[cfg(target_arch = "riscv32")]
-const MAX_TICKS: u32 = u32::MAX;
-
-/// The counter of instructions always runs.
+/// RISC-V counts instructions, and always does.
 #[cfg(target_arch = "riscv32")]
 fn start() {}
 
 #[cfg(target_arch = "riscv32")]
-#[inline(always)]
-fn now() -> u32 {
-    riscv::register::minstret::read() as u32
+#[inline(never)]
+fn now() -> u64 {
+    riscv::register::minstret::read64()
 }

@@ -75,8 +75,7 @@ impl<'a> InlinedTree<'a> {
         if enter > exit {
             return;
         }
-        let mut stack: [(u32, f32, f32); MAX_DEPTH] = [(0, 0.0, 0.0); MAX_DEPTH];
-        let mut height = 0;
+        let mut stack: heapless::Vec<(u32, f32, f32), MAX_DEPTH> = heapless::Vec::new();
         let mut index = 0;
         loop {
             let Some(&[payload, link]) = self.nodes.get(index as usize) else { return };
@@ -92,34 +91,26 @@ impl<'a> InlinedTree<'a> {
                 } else if plane_exit < enter {
                     index = far;
                 } else {
-                    if let Some(place) = stack.get_mut(height) {
-                        *place = (far, if plane_entry > enter { plane_entry } else { enter }, exit);
-                        height += 1;
-                    }
+                    let _ = stack.push((far, if plane_entry > enter { plane_entry } else { enter }, exit));
                     index = near;
                     exit = if plane_exit < exit { plane_exit } else { exit };
                 }
                 continue;
             }
-            // A leaf: one primitive, or references.
-            match link >> 2 {
-                1 => t_max = test(payload),
-                count => {
-                    for place in payload..payload + count {
-                        let Some(word) = self.references.get(place as usize / 2) else { break };
-                        t_max = test(word >> (16 * (place % 2)) & 0xffff);
-                    }
-                }
+            // A leaf: a primitive, or references to some.
+            let count = link >> 2;
+            for place in payload..payload + count {
+                let reference = self.references.get(place as usize / 2).map(|word| word >> (16 * (place % 2)) & 0xffff);
+                let Some(index) = (if count == 1 { Some(payload) } else { reference }) else { break };
+                t_max = test(index);
             }
-            // The nearest far child that begins before the best hit.
-            loop {
-                let Some(&entry) = height.checked_sub(1).and_then(|top| stack.get(top)) else { return };
-                height -= 1;
-                if !(entry.1 > beyond(t_max)) {
-                    (index, enter, exit) = entry;
-                    break;
+            // The nearest far child that begins before the best hit; no plane's parameter is NaN here.
+            (index, enter, exit) = loop {
+                let Some(entry) = stack.pop() else { return };
+                if entry.1 <= beyond(t_max) {
+                    break entry;
                 }
-            }
+            };
         }
     }
 }

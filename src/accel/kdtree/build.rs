@@ -54,10 +54,15 @@ struct Task {
 /// See [`KdTree::words`](super::KdTree::words).
 pub(super) const fn words(primitives: usize, options: &Options) -> usize {
     // In the stream a reference takes a word, of which the budget may have counted half.
-    let stream = options.bytes(primitives) / 2;
-    (HEADER_WORDS + TASKS * TASK_WORDS + Node::WORDS)
-        .saturating_add(stream)
-        .saturating_add(most_items(primitives).saturating_mul(ITEM_WORDS))
+    let bytes = options.bytes(primitives);
+    let (stream, packed) = (bytes / 2, bytes / 4);
+    // Beside the stream stand first the items, then the references on their way behind the nodes.
+    let items = most_items(primitives).saturating_mul(ITEM_WORDS);
+    (HEADER_WORDS + TASKS * TASK_WORDS + Node::WORDS).saturating_add(stream).saturating_add(if items > packed {
+        items
+    } else {
+        packed
+    })
 }
 
 /// Items that may be pending at a time: cells become leaves where there would be more.
@@ -196,7 +201,8 @@ impl<'w, 'p, P: Primitives + ?Sized> Builder<'w, 'p, P> {
         }
         let header = HEADER_WORDS * 4;
         let bytes = self.options.bytes(count as usize).saturating_sub(header);
-        let budget = u32::try_from(bytes / 2).unwrap_or(u32::MAX);
+        // Whole words only: an odd number of narrow references is padded.
+        let budget = u32::try_from(bytes / 4 * 2).unwrap_or(u32::MAX);
         Ok(Task { cell: self.bounds, top: count, count, depth: 0, budget, parent: NONE })
     }
 

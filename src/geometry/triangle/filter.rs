@@ -1,7 +1,7 @@
 //! The first tier: the shear test in `f32` with a proven bound on its error.
 
-use super::{Crossing, Triangle};
-use crate::geometry::PreparedRay;
+use super::Crossing;
+use crate::geometry::{PreparedRay, ray::Shear};
 
 /// Half an ulp of 1.
 const U: f32 = 1.0 / 16_777_216.0;
@@ -27,6 +27,9 @@ pub(super) enum Verdict {
     Unproven,
 }
 
+/// Three corners where they lie: they are indexed by axis, which in memory costs one load and in registers a detour.
+pub(super) type Corners<'t> = [&'t [f32; 3]; 3];
+
 /// The corners relative to the ray's origin, sheared so that the ray runs along the third axis.
 pub(super) struct Sheared {
     x: [f32; 3],
@@ -35,16 +38,11 @@ pub(super) struct Sheared {
 }
 
 #[inline(always)]
-pub(super) fn shear(triangle: &Triangle, ray: &PreparedRay) -> Sheared {
-    let kz = ray.major;
-    let (kx, ky) = (kz.next(), kz.next().next());
-    let origin = ray.ray().origin;
-    let (ox, oy, oz) = (kx.of(origin), ky.of(origin), kz.of(origin));
-    let [sx, sy] = ray.shear;
-    let corners = [triangle.a, triangle.b, triangle.c];
-    let z = corners.map(|v| kz.of(v) - oz);
-    let x = [0, 1, 2].map(|i: usize| (kx.of(corners[i]) - ox) - sx * z[i]);
-    let y = [0, 1, 2].map(|i: usize| (ky.of(corners[i]) - oy) - sy * z[i]);
+pub(super) fn shear(corners: Corners<'_>, ray: &PreparedRay) -> Sheared {
+    let Shear { axes: [kx, ky, kz], origin: [ox, oy, oz], slope: [sx, sy], .. } = ray.shear;
+    let z = corners.map(|v| v[kz as usize] - oz);
+    let x = [0, 1, 2].map(|i: usize| (corners[i][kx as usize] - ox) - sx * z[i]);
+    let y = [0, 1, 2].map(|i: usize| (corners[i][ky as usize] - oy) - sy * z[i]);
     Sheared { x, y, z }
 }
 
@@ -58,8 +56,8 @@ pub(super) fn edges(s: &Sheared) -> [f32; 3] {
 }
 
 #[inline(always)]
-pub(super) fn test(triangle: &Triangle, ray: &PreparedRay) -> Verdict {
-    let s = shear(triangle, ray);
+pub(super) fn test(corners: Corners<'_>, ray: &PreparedRay) -> Verdict {
+    let s = shear(corners, ray);
     let [u, v, w] = edges(&s);
     let ([ax, bx, cx], [ay, by, cy], [az, bz, cz]) = (s.x, s.y, s.z);
     let spread = ((ax.abs() + ay.abs()) + (bx.abs() + by.abs())) + (cx.abs() + cy.abs());
@@ -82,7 +80,7 @@ pub(super) fn test(triangle: &Triangle, ray: &PreparedRay) -> Verdict {
 
     // The determinant has the sign of -(d . N) * d_major.
     let determinant = (u + v) + w;
-    let inverse = ray.views[ray.major as usize].entry;
+    let inverse = ray.shear.inverse;
     let front = (determinant > 0.0) == (inverse > 0.0);
     let (e1, e2) = (bz - az, cz - az);
     let q = az + (v * e1 + w * e2) / determinant;

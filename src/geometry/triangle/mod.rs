@@ -62,6 +62,27 @@ fn agreement(signs: [Sign; 3]) -> Option<Sign> {
     }
 }
 
+/// [`Triangle::intersect`] for corners where they lie.
+#[inline(always)]
+pub(crate) fn intersect(corners: [&[f32; 3]; 3], ray: &PreparedRay, t_min: f32, t_max: f32) -> Option<Crossing> {
+    let certify = |front| {
+        let [a, b, c] = corners.map(|&v| Vec3::from_array(v));
+        Triangle { a, b, c }.certify(ray, t_min, t_max, front)
+    };
+    match filter::test(corners, ray) {
+        Verdict::Miss => None,
+        Verdict::Hit(crossing) => Some(crossing),
+        Verdict::Near { crossing, error } => {
+            // Proven to lie outside: the slack belongs before any rounding that made `t` (rule R7).
+            if crossing.t + error < t_min || crossing.t - error > beyond(t_max) {
+                return None;
+            }
+            certify(Some(crossing.front))
+        }
+        Verdict::Unproven => certify(None),
+    }
+}
+
 impl Triangle {
     /// The triangle with these corners.
     #[inline(always)]
@@ -79,18 +100,7 @@ impl Triangle {
     #[inline(always)]
     #[must_use]
     pub fn intersect(&self, ray: &PreparedRay, t_min: f32, t_max: f32) -> Option<Crossing> {
-        match filter::test(self, ray) {
-            Verdict::Miss => None,
-            Verdict::Hit(crossing) => Some(crossing),
-            Verdict::Near { crossing, error } => {
-                // Proven to lie outside: the slack belongs before any rounding that made `t` (rule R7).
-                if crossing.t + error < t_min || crossing.t - error > beyond(t_max) {
-                    return None;
-                }
-                self.certify(ray, t_min, t_max, Some(crossing.front))
-            }
-            Verdict::Unproven => self.certify(ray, t_min, t_max, None),
-        }
+        intersect([self.a.as_ref(), self.b.as_ref(), self.c.as_ref()], ray, t_min, t_max)
     }
 
     /// The slow tiers; `front` is known if the filter has proven the hit.
@@ -98,7 +108,8 @@ impl Triangle {
     #[inline(never)]
     fn certify(&self, ray: &PreparedRay, t_min: f32, t_max: f32, front: Option<bool>) -> Option<Crossing> {
         // A crossing lies between the corners' parameters along the major axis.
-        let planes = [self.a, self.b, self.c].map(|v| ray.entry(ray.major, ray.major.of(v)));
+        let [.., major] = ray.shear.axes;
+        let planes = [self.a, self.b, self.c].map(|v| ray.entry(major, major.of(v)));
         let nearest = planes.iter().fold(f32::INFINITY, |x, &t| if t < x { t } else { x });
         let farthest = planes.iter().fold(f32::NEG_INFINITY, |x, &t| if t > x { t } else { x });
         if nearest > beyond(t_max) || beyond(farthest) < t_min {
@@ -124,7 +135,8 @@ impl Triangle {
     /// An `f32` estimate for shading and texture coordinates; deterministic like everything else.
     #[must_use]
     pub fn weights(&self, ray: &PreparedRay) -> (f32, f32) {
-        let [u, v, w] = filter::edges(&filter::shear(self, ray)).map(f32::abs);
+        let [u, v, w] =
+            filter::edges(&filter::shear([self.a.as_ref(), self.b.as_ref(), self.c.as_ref()], ray)).map(f32::abs);
         let sum = u + v + w;
         if sum > 0.0 && sum.is_finite() { (v / sum, w / sum) } else { (1.0 / 3.0, 1.0 / 3.0) }
     }

@@ -16,7 +16,7 @@ const LIMIT: f32 = 1.05;
 #[entry]
 fn main() -> ! {
     let counter = Counter::new();
-    let baked = &baked::KNOT;
+    let baked = core::hint::black_box(&baked::KNOT);
     let (mesh, tree) = (baked.mesh(), baked.tree());
     let inlined = InlinedTree::new(&tree);
     let scene = Scene::new(tree, mesh).expect("a tree and its mesh");
@@ -38,7 +38,7 @@ fn main() -> ! {
             shadows += u32::from(scene.any_hit(ray));
         }
     }
-    let rays = by_cursor.rays;
+    let rays = u64::from(by_cursor.rays);
     let ratio = cursor as f32 / closure as f32;
     println!("{} instructions per ray by the cursor", cursor / rays);
     println!("{} by the inlined closure, ratio {ratio:.3}", closure / rays);

@@ -1,0 +1,170 @@
+use std::{fs::File, io::Read, path::Path};
+
+use hitscan::{
+    KdTree, Mesh,
+    asset::{Asset, Kind},
+    glam::Vec3,
+    primitives::Indices,
+    render::Materials,
+};
+
+use super::{Built, Palette, Preset, Structure};
+use crate::{
+    failure::Failure,
+    input,
+    model::{Fault, LoadError, Model},
+    progress::Progress,
+};
+
+/// The first bytes of an asset.
+const MAGIC: &[u8; 4] = b"HITS";
+
+/// What a path names.
+#[derive(Debug)]
+pub enum Source {
+    /// A mesh file.
+    Model(Geometry),
+    /// The words of an asset.
+    Asset(Vec<u32>),
+}
+
+/// Triangles and their materials.
+#[derive(Debug, Default)]
+pub struct Geometry {
+    /// Positions.
+    pub vertices: Vec<Vec3>,
+    /// Corners, if the numbers of some need 32 bits.
+    pub wide: Vec<[u32; 3]>,
+    /// Corners, if 16 bits are enough.
+    pub narrow: Vec<[u16; 3]>,
+    /// Materials.
+    pub palette: Palette,
+    /// Whether y is up by the definition of the file's format.
+    pub y_up: bool,
+}
+
+impl Geometry {
+    /// These triangles, their corners in 16 bits if they fit.
+    pub fn new(vertices: Vec<Vec3>, triangles: Vec<[u32; 3]>, palette: Palette) -> Self {
+        let (mut wide, mut narrow) = (triangles, Vec::new());
+        if vertices.len() <= 1 << 16 {
+            narrow = wide.iter().map(|corners| corners.map(|vertex| vertex as u16)).collect();
+            wide = Vec::new();
+        }
+        Self { vertices, wide, narrow, palette, y_up: false }
+    }
+
+    fn load(path: &Path) -> Result<Self, Failure> {
+        let model = Model::load(path)?;
+        for warning in &model.warnings {
+            eprintln!("hitscan: warning: {}: {warning}", path.display());
+        }
+        let vertices = model.vertices.into_iter().map(Vec3::from_array).collect();
+        let palette = Palette::of_model(&model.materials, model.material_ids);
+        let name = path.to_string_lossy().to_ascii_lowercase();
+        let y_up = [".gltf", ".glb", ".gltf.gz", ".glb.gz"].iter().any(|ending| name.ends_with(ending));
+        Ok(Self { y_up, ..Self::new(vertices, model.triangles, palette) })
+    }
+
+    /// The triangles, checked.
+    pub fn mesh(&self) -> Result<Mesh<'_>, Failure> {
+        let indices = if self.wide.is_empty() { Indices::Narrow(&self.narrow) } else { Indices::Wide(&self.wide) };
+        let mend = "scale the mesh or move it nearer to the origin";
+        Mesh::new(&self.vertices, indices).map_err(|error| Failure::new(error, mend))
+    }
+}
+
+/// What there is to see of a source.
+#[derive(Clone, Copy, Debug)]
+pub struct View<'a> {
+    /// The triangles.
+    pub mesh: Mesh<'a>,
+    /// Their materials, if it names any.
+    pub materials: Option<Materials<'a>>,
+    /// The structure of an asset, if it has one.
+    pub tree: Option<KdTree<'a>>,
+    /// Whether y is up by definition.
+    pub y_up: bool,
+    /// What it took to check the asset.
+    seconds: f64,
+}
+
+impl Source {
+    /// Reads a mesh file or an asset, told apart by the first bytes and the extension.
+    pub fn load(path: &Path) -> Result<Self, Failure> {
+        let progress = Progress::spinner(&format!("reading {} …", path.display()));
+        let mut start = [0; 4];
+        let marked = File::open(path).and_then(|mut file| file.read_exact(&mut start)).is_ok() && start == *MAGIC;
+        let source = if marked || path.extension().is_some_and(|extension| extension == "hits") {
+            Self::load_asset(path)?
+        } else {
+            Self::Model(Geometry::load(path).map_err(|failure| mention_assets(failure, path))?)
+        };
+        progress.finish();
+        Ok(source)
+    }
+
+    fn load_asset(path: &Path) -> Result<Self, Failure> {
+        let bytes = input::read(path)?;
+        let (words, rest) = bytes.as_chunks();
+        let words: Vec<u32> = words.iter().copied().map(u32::from_le_bytes).collect();
+        if !rest.is_empty() {
+            let what = format!("{}: {} bytes are not a whole number of words", path.display(), bytes.len());
+            return Err(Failure::new(what, "fetch or bake the asset again"));
+        }
+        // Whatever else the asset is for, its header, table and checksum must be right.
+        Asset::from_words(&words).map_err(|error| damaged(path, error))?;
+        Ok(Self::Asset(words))
+    }
+
+    /// What there is to see, checked in full; `path` is for the error.
+    pub fn view(&self, path: &Path) -> Result<View<'_>, Failure> {
+        match self {
+            Self::Model(geometry) => {
+                let name = |failure: Failure| match failure {
+                    Failure::Other { what, mend } => Failure::new(format!("{}: {what}", path.display()), mend),
+                    other => other,
+                };
+                let palette = &geometry.palette;
+                let materials = (!palette.materials.is_empty()).then(|| palette.as_materials());
+                let mesh = geometry.mesh().map_err(name)?;
+                Ok(View { mesh, materials, tree: None, y_up: geometry.y_up, seconds: 0.0 })
+            }
+            Self::Asset(words) => {
+                let progress = Progress::spinner("checking the asset …");
+                let damaged = |error| damaged(path, error);
+                let asset = Asset::from_words(words).map_err(|error| damaged(error.into()))?;
+                let has = |kind| asset.sections().any(|section| section.kind == kind);
+                let mesh = asset.read().map_err(damaged)?;
+                let materials = has(Kind::Materials).then(|| asset.read().map_err(damaged)).transpose()?;
+                let tree = has(Kind::KdTree).then(|| asset.read().map_err(damaged)).transpose()?;
+                Ok(View { mesh, materials, tree, y_up: false, seconds: progress.finish() })
+            }
+        }
+    }
+}
+
+impl View<'_> {
+    /// The structure that was asked for: the asset's own unless another was named.
+    pub fn build(&self, structure: Option<Structure>, preset: Preset) -> Result<Built, Failure> {
+        match (structure, &self.tree) {
+            (None, Some(tree)) => Ok(Built::of_asset(tree, self.seconds)),
+            _ => Built::new(&self.mesh, structure.unwrap_or_default(), preset),
+        }
+    }
+}
+
+fn damaged(path: &Path, error: impl std::fmt::Display) -> Failure {
+    Failure::new(format!("{}: {error}", path.display()), "fetch or bake the asset again")
+}
+
+/// A file of unknown kind may have been meant as an asset.
+fn mention_assets(failure: Failure, path: &Path) -> Failure {
+    match failure {
+        Failure::Load(LoadError { fault: Fault::UnknownExtension, .. }) => {
+            let mend = format!("use a file ending in {}, or one made by `hitscan bake`", crate::model::EXTENSIONS);
+            Failure::new(format!("{}: neither a mesh nor an asset", path.display()), mend)
+        }
+        other => other,
+    }
+}
