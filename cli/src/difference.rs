@@ -32,11 +32,8 @@ pub struct Difference {
 
 /// Compares two answers bit for bit.
 pub fn diff(a: &[HitRecord], b: &[HitRecord]) -> Difference {
-    let mut difference = Difference {
-        rays: a.len().min(b.len()),
-        unpaired: a.len().abs_diff(b.len()),
-        ..Difference::default()
-    };
+    let mut difference =
+        Difference { rays: a.len().min(b.len()), unpaired: a.len().abs_diff(b.len()), ..Difference::default() };
     for (ray, (a, b)) in a.iter().copied().zip(b.iter().copied()).enumerate() {
         let same_t = a.t.to_bits() == b.t.to_bits();
         if same_t && a.primitive == b.primitive {
@@ -95,11 +92,7 @@ impl fmt::Display for Difference {
         }
         writeln!(f, "  hit only in A        {}", self.only_a)?;
         writeln!(f, "  hit only in B        {}", self.only_b)?;
-        writeln!(
-            f,
-            "  different primitive  {} ({} at the same t)",
-            self.primitive, self.tied
-        )?;
+        writeln!(f, "  different primitive  {} ({} at the same t)", self.primitive, self.tied)?;
         writeln!(f, "  different t          {}", self.t)?;
         writeln!(f, "  largest relative t   {:.3e}", self.largest_relative_t)?;
         for (ray, a, b) in &self.first {
@@ -135,31 +128,11 @@ mod tests {
 
     #[test]
     fn each_ray_counts_once() {
-        let a = [
-            hit(1.0, 0),
-            HitRecord::MISS,
-            hit(2.0, 1),
-            hit(2.0, 1),
-            hit(4.0, 3),
-            hit(0.0, 4),
-        ];
-        let b = [
-            HitRecord::MISS,
-            hit(1.0, 0),
-            hit(2.0, 2),
-            hit(1.0, 2),
-            hit(5.0, 3),
-            hit(-0.0, 4),
-        ];
+        let a = [hit(1.0, 0), HitRecord::MISS, hit(2.0, 1), hit(2.0, 1), hit(4.0, 3), hit(0.0, 4)];
+        let b = [HitRecord::MISS, hit(1.0, 0), hit(2.0, 2), hit(1.0, 2), hit(5.0, 3), hit(-0.0, 4)];
         let found = diff(&a, &b);
-        assert_eq!(
-            (found.only_a, found.only_b, found.primitive, found.tied),
-            (1, 1, 2, 1)
-        );
-        assert_eq!(
-            (found.t, found.differing(), found.largest_relative_t),
-            (2, 6, 0.5)
-        );
+        assert_eq!((found.only_a, found.only_b, found.primitive, found.tied), (1, 1, 2, 1));
+        assert_eq!((found.t, found.differing(), found.largest_relative_t), (2, 6, 0.5));
         assert_eq!(found.first[1], (1, a[1], b[1]));
         assert!(found.to_string().contains("ray 0: 0 at t = 1 | miss\n"));
         assert_eq!(diff(&a.repeat(9), &b.repeat(9)).first.len(), SHOWN);

@@ -33,10 +33,7 @@ pub enum Failure {
 impl Failure {
     /// A failure in the words of the place where it happens.
     pub fn new(what: impl ToString, mend: impl ToString) -> Self {
-        Failure::Other {
-            what: what.to_string(),
-            mend: mend.to_string(),
-        }
+        Failure::Other { what: what.to_string(), mend: mend.to_string() }
     }
 
     /// Prints the failure and gives the code to exit with.
@@ -45,6 +42,16 @@ impl Failure {
         let _ = writeln!(io::stderr(), "hitscan: {self}");
         ExitCode::from(2)
     }
+}
+
+/// Prints what is worth knowing but no reason to stop.
+pub fn warn(text: &str) {
+    let _ = writeln!(io::stderr(), "hitscan: warning: {text}");
+}
+
+/// Prints a report where standard output is taken for data.
+pub fn note(text: &str) {
+    let _ = io::stderr().write_all(text.as_bytes());
 }
 
 #[cfg(test)]

@@ -57,26 +57,16 @@ pub fn read(path: &Path) -> Result<Vec<u8>, InputError> {
     } else {
         fs::read(path)
     };
-    bytes.map_err(|error| InputError {
-        path: path.to_owned(),
-        fault: error.into(),
-    })
+    bytes.map_err(|error| InputError { path: path.to_owned(), fault: error.into() })
 }
 
 /// Reads an input of records of `record` bytes, each called a `what`.
-pub(crate) fn read_records(
-    path: &Path,
-    record: usize,
-    what: &'static str,
-) -> Result<Vec<u8>, InputError> {
+pub(crate) fn read_records(path: &Path, record: usize, what: &'static str) -> Result<Vec<u8>, InputError> {
     let bytes = read(path)?;
     match bytes.len() {
         size if size % record != 0 => {
             let fault = InputFault::Ragged { size, record, what };
-            Err(InputError {
-                path: path.to_owned(),
-                fault,
-            })
+            Err(InputError { path: path.to_owned(), fault })
         }
         _ => Ok(bytes),
     }
@@ -87,9 +77,7 @@ pub fn explain(error: &io::Error) -> String {
     match error.kind() {
         ErrorKind::NotFound => "no such file: check the path".to_owned(),
         ErrorKind::IsADirectory => "is a directory: name a file in it".to_owned(),
-        ErrorKind::NotADirectory => {
-            "a file stands where the path has a directory: check the path".to_owned()
-        }
+        ErrorKind::NotADirectory => "a file stands where the path has a directory: check the path".to_owned(),
         ErrorKind::PermissionDenied => "may not be read: check its permissions".to_owned(),
         _ => format!("cannot be read ({error}): check the disk and try again"),
     }

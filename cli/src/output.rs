@@ -23,20 +23,12 @@ impl fmt::Display for OutputError {
                 f.write_str("a file stands where the path has a directory: choose another path")
             }
             ErrorKind::IsADirectory => f.write_str("is a directory: name a file in it"),
-            ErrorKind::PermissionDenied => {
-                f.write_str("may not be written: check permissions or choose another path")
-            }
-            ErrorKind::ReadOnlyFilesystem => {
-                f.write_str("the disk is read-only: choose another path")
-            }
+            ErrorKind::PermissionDenied => f.write_str("may not be written: check permissions or choose another path"),
+            ErrorKind::ReadOnlyFilesystem => f.write_str("the disk is read-only: choose another path"),
             ErrorKind::StorageFull | ErrorKind::QuotaExceeded => {
                 f.write_str("the disk is full: free some space or choose another disk")
             }
-            _ => write!(
-                f,
-                "cannot be written ({}): check the path and the disk",
-                self.error
-            ),
+            _ => write!(f, "cannot be written ({}): check the path and the disk", self.error),
         }
     }
 }
@@ -52,10 +44,7 @@ impl std::error::Error for OutputError {
 /// The bytes go to a temporary file beside the target, which takes the target's name only when all
 /// of them are on disk; an error leaves whatever was there before. A reader that closes its end of
 /// standard output early (`| head`) has had enough, which is no error.
-pub fn write_atomically(
-    path: &Path,
-    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
-) -> Result<(), OutputError> {
+pub fn write_atomically(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), OutputError> {
     let outcome = if path == Path::new("-") {
         match through(io::stdout().lock(), write) {
             Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
@@ -64,10 +53,7 @@ pub fn write_atomically(
     } else {
         write_file(path, write)
     };
-    outcome.map_err(|error| OutputError {
-        path: path.to_owned(),
-        error,
-    })
+    outcome.map_err(|error| OutputError { path: path.to_owned(), error })
 }
 
 fn write_file(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
@@ -82,9 +68,7 @@ fn write_file(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>)
         Ok(old) => Some(old.permissions()),
         Err(_) => usual_permissions(),
     };
-    let folder = target
-        .parent()
-        .filter(|folder| !folder.as_os_str().is_empty());
+    let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty());
     let mut temporary = tempfile::Builder::new();
     temporary.prefix(".hitscan-");
     if let Some(permissions) = permissions {
@@ -97,10 +81,7 @@ fn write_file(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>)
 }
 
 /// Runs `write` through a buffer and flushes it.
-fn through<W: Write>(
-    sink: W,
-    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
-) -> io::Result<W> {
+fn through<W: Write>(sink: W, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<W> {
     let mut buffer = BufWriter::with_capacity(1 << 16, sink);
     write(&mut buffer)?;
     // Standard output has a buffer of its own, which only `flush` reaches.
@@ -126,9 +107,7 @@ mod tests {
 
     fn names(folder: &Path) -> Vec<String> {
         let entries = fs::read_dir(folder).unwrap();
-        entries
-            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-            .collect()
+        entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect()
     }
 
     #[test]
@@ -172,8 +151,7 @@ mod tests {
     fn links_devices_and_masks_are_respected() {
         use std::os::unix::fs::{PermissionsExt, symlink};
         let folder = tempfile::tempdir().unwrap();
-        let [target, link, fresh] =
-            ["target", "link", "fresh"].map(|name| folder.path().join(name));
+        let [target, link, fresh] = ["target", "link", "fresh"].map(|name| folder.path().join(name));
         fs::write(&target, "old").unwrap();
         let usual = fs::metadata(&target).unwrap().permissions();
         symlink(&target, &link).unwrap();

@@ -8,20 +8,13 @@ use std::path::Path;
 use crate::output::{OutputError, write_atomically};
 
 /// Writes `pixels` as a PNG; there must be `width * height` of them and one at least.
-pub fn write_png(
-    path: &Path,
-    width: u32,
-    height: u32,
-    pixels: &[[u8; 3]],
-) -> Result<(), OutputError> {
+pub fn write_png(path: &Path, width: u32, height: u32, pixels: &[[u8; 3]]) -> Result<(), OutputError> {
     write_atomically(path, |file| {
         let mut encoder = png::Encoder::new(file, width, height);
         encoder.set_color(png::ColorType::Rgb);
         encoder.set_depth(png::BitDepth::Eight);
         let mut writer = encoder.write_header().map_err(to_io)?;
-        writer
-            .write_image_data(pixels.as_flattened())
-            .map_err(to_io)?;
+        writer.write_image_data(pixels.as_flattened()).map_err(to_io)?;
         writer.finish().map_err(to_io)
     })
 }
@@ -89,23 +82,13 @@ mod tests {
     fn a_png_reads_back() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.png");
-        let pixels = [
-            [255, 0, 0],
-            [0, 255, 0],
-            [0, 0, 255],
-            [1, 2, 3],
-            [4, 5, 6],
-            [7, 8, 9],
-        ];
+        let pixels = [[255, 0, 0], [0, 255, 0], [0, 0, 255], [1, 2, 3], [4, 5, 6], [7, 8, 9]];
         write_png(&path, 3, 2, &pixels).unwrap();
         let file = io::BufReader::new(std::fs::File::open(&path).unwrap());
         let mut reader = png::Decoder::new(file).read_info().unwrap();
         let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
         let info = reader.next_frame(&mut bytes).unwrap();
-        assert_eq!(
-            (info.width, info.height, info.color_type),
-            (3, 2, png::ColorType::Rgb)
-        );
+        assert_eq!((info.width, info.height, info.color_type), (3, 2, png::ColorType::Rgb));
         assert_eq!(bytes, pixels.as_flattened());
     }
 
@@ -114,23 +97,14 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.png");
         for (width, height) in [(0, 0), (2, 2)] {
-            let error = write_png(&path, width, height, &[[0; 3]; 3])
-                .unwrap_err()
-                .to_string();
+            let error = write_png(&path, width, height, &[[0; 3]; 3]).unwrap_err().to_string();
             assert!(!error.contains('\n') && !path.exists(), "{error}");
         }
     }
 
     #[test]
     fn a_preview_stacks_two_pixels_in_a_character() {
-        let pixels = [
-            [1, 2, 3],
-            [9, 9, 9],
-            [4, 5, 6],
-            [8, 8, 8],
-            [7, 7, 7],
-            [0, 0, 0],
-        ];
+        let pixels = [[1, 2, 3], [9, 9, 9], [4, 5, 6], [8, 8, 8], [7, 7, 7], [0, 0, 0]];
         let expected = "\x1b[38;2;1;2;3;48;2;4;5;6m▀\x1b[38;2;9;9;9;48;2;8;8;8m▀\x1b[0m\n\
                         \x1b[38;2;7;7;7m▀\x1b[38;2;0;0;0m▀\x1b[0m\n";
         assert_eq!(preview(2, 3, &pixels, 80), expected);
@@ -140,16 +114,7 @@ mod tests {
     fn a_preview_averages_what_it_shrinks() {
         let pixels = [[0; 3], [10; 3], [20; 3], [30; 3]];
         assert_eq!(preview(2, 2, &pixels, 1), "\x1b[38;2;15;15;15m▀\x1b[0m\n");
-        for (width, height) in [
-            (1, 1),
-            (7, 5),
-            (5, 7),
-            (64, 3),
-            (3, 64),
-            (0, 0),
-            (0, 5),
-            (5, 0),
-        ] {
+        for (width, height) in [(1, 1), (7, 5), (5, 7), (64, 3), (3, 64), (0, 0), (0, 5), (5, 0)] {
             let picture = vec![[7; 3]; (width * height) as usize];
             let lines = (1..100).map(|columns| preview(width, height, &picture, columns));
             assert!(lines.into_iter().all(|text| text.lines().count() <= 32));

@@ -6,6 +6,7 @@
 use std::path::Path;
 
 use crate::input::{self, InputError};
+#[cfg(test)]
 use crate::output::{OutputError, write_atomically};
 
 /// A ray and where on it hits count.
@@ -24,12 +25,7 @@ pub struct RayRecord {
 impl RayRecord {
     /// A ray without an end.
     pub fn new(origin: [f32; 3], direction: [f32; 3]) -> Self {
-        RayRecord {
-            origin,
-            direction,
-            t_min: 0.0,
-            t_max: f32::INFINITY,
-        }
+        RayRecord { origin, direction, t_min: 0.0, t_max: f32::INFINITY }
     }
 }
 
@@ -38,24 +34,15 @@ pub fn read_rays(path: &Path, interval: bool) -> Result<Vec<RayRecord>, InputErr
     let record = size(interval);
     let bytes = input::read_records(path, record, "ray")?;
     let rays = bytes.chunks_exact(record).map(|bytes| {
-        let mut floats = bytes
-            .chunks_exact(4)
-            .map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]]));
+        let mut floats = bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]]));
         let mut next = || floats.next().unwrap_or_default();
         let ray = RayRecord::new([next(), next(), next()], [next(), next(), next()]);
-        if interval {
-            RayRecord {
-                t_min: next(),
-                t_max: next(),
-                ..ray
-            }
-        } else {
-            ray
-        }
+        if interval { RayRecord { t_min: next(), t_max: next(), ..ray } } else { ray }
     });
     Ok(rays.collect())
 }
 
+#[cfg(test)]
 /// Writes a ray file, with `interval` t_min and t_max too; `-` is standard output.
 pub fn write_rays(path: &Path, rays: &[RayRecord], interval: bool) -> Result<(), OutputError> {
     write_atomically(path, |file| {
@@ -81,11 +68,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("rays");
         let plain = RayRecord::new([1.0, 2.0, 3.0], [-0.0, 5.0, 6.0]);
-        let short = RayRecord {
-            t_min: 0.5,
-            t_max: 7.0,
-            ..plain
-        };
+        let short = RayRecord { t_min: 0.5, t_max: 7.0, ..plain };
         write_rays(&path, &[plain, short], true).unwrap();
         assert_eq!(read_rays(&path, true).unwrap(), [plain, short]);
         write_rays(&path, &[plain, short], false).unwrap();
@@ -99,10 +82,7 @@ mod tests {
         let path = folder.path().join("rays");
         std::fs::write(&path, [0; 50]).unwrap();
         let complaint = |interval| read_rays(&path, interval).unwrap_err().to_string();
-        assert!(
-            complaint(false)
-                .contains("50 bytes are not a whole number of rays of 24 bytes, 2 are left")
-        );
+        assert!(complaint(false).contains("50 bytes are not a whole number of rays of 24 bytes, 2 are left"));
         assert!(complaint(true).contains("rays of 32 bytes, 18 are left over: check"));
     }
 }

@@ -45,13 +45,14 @@ impl Accelerator for List {
     }
 
     fn traverse(&self, _ray: &PreparedRay) -> ListTraversal {
-        ListTraversal { len: self.len }
+        ListTraversal { next: 0, len: self.len }
     }
 }
 
-/// The walk over a [`List`]: one leaf.
+/// The walk over a [`List`]: one leaf, or as many as there are pauses.
 #[derive(Clone, Copy, Debug)]
 pub struct ListTraversal {
+    next: u32,
     len: u32,
 }
 
@@ -60,18 +61,21 @@ impl Traversal for ListTraversal {
 
     #[inline]
     fn next_leaf(&mut self, _ray: &PreparedRay, _t_max: f32) -> Option<Leaf<'static>> {
-        let len = core::mem::take(&mut self.len);
-        (len > 0).then(|| Leaf::consecutive(0, len))
+        let first = core::mem::replace(&mut self.next, self.len);
+        (first < self.len).then(|| Leaf::consecutive(first, self.len - first))
     }
 
     /// Each primitive counts as a node.
-    fn step(&mut self, ray: &PreparedRay, t_max: f32, budget: &mut u32) -> Step<Leaf<'static>> {
-        match self.next_leaf(ray, t_max) {
-            None => Step::Done,
-            Some(leaf) => {
-                *budget = budget.saturating_sub(1);
-                Step::Leaf(leaf)
-            }
+    fn step(&mut self, _ray: &PreparedRay, _t_max: f32, budget: &mut u32) -> Step<Leaf<'static>> {
+        let (first, count) = (self.next, (self.len - self.next).min(*budget));
+        if first == self.len {
+            return Step::Done;
         }
+        if count == 0 {
+            return Step::Paused;
+        }
+        self.next += count;
+        *budget -= count;
+        Step::Leaf(Leaf::consecutive(first, count))
     }
 }

@@ -207,10 +207,12 @@ pub(crate) fn beyond(t: f32) -> f32 {
     t + t.abs() * (4.0 * WIDENING) + 4.0 * TINY
 }
 
-/// What a traversal that starts at `t` adds to its exits: where `t` is negative, it makes up for the factor in them.
+/// What a traversal that starts at `t` adds to its exits: where they are negative, it makes up for the factor in them.
+///
+/// Twice what [`PreparedRay::exit`] takes off, so that no exit of a cell lies before that of a box in it.
 #[inline(always)]
 pub(crate) fn slack(t: f32) -> f32 {
-    if t < 0.0 { TINY - t * (4.0 * WIDENING) } else { TINY }
+    if t < 0.0 { 2.0 * TINY - t * (8.0 * WIDENING) } else { 2.0 * TINY }
 }
 
 #[cfg(test)]

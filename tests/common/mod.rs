@@ -1,7 +1,7 @@
 //! What the tests share: random numbers, adversarial scenes and rays.
 #![allow(dead_code, missing_docs)]
 
-use hitscan::{Hit, Ray, glam::Vec3};
+use hitscan::{Hit, Ray, geometry::Aabb, glam::Vec3};
 
 /// A hit for comparisons that tell -0 from 0.
 pub fn bits(hit: Option<Hit>) -> Option<(u32, u32)> {
@@ -154,4 +154,20 @@ pub fn adversarial_ray(random: &mut Random, family: usize, vertices: &[Vec3]) ->
     let intervals = [(f32::NEG_INFINITY, f32::INFINITY), (-1.0, 1.0), (1.0, f32::INFINITY), (-3.0, -0.25), (0.0, 0.5)];
     let (t_min, t_max) = intervals.get(random.below(9)).copied().unwrap_or((0.0, f32::INFINITY));
     Ray::new(origin, direction).starting_at(t_min).up_to(t_max)
+}
+
+/// A box between two points.
+pub fn boxed(random: &mut Random, family: usize) -> Aabb {
+    Aabb::around([point(random, family), point(random, family)])
+}
+
+/// A number that has nothing to do with any shape, but is always the same for the same ray and shape.
+pub fn noise(index: u32, ray: &Ray) -> f32 {
+    let mut seed = u64::from(index);
+    for x in ray.origin.to_array().into_iter().chain(ray.direction.to_array()) {
+        seed = (seed ^ u64::from(x.to_bits())).wrapping_mul(0x9E37_79B9_7F4A_7C15).rotate_left(29);
+    }
+    let mut random = Random::new(seed);
+    let scale = random.pick(&[1.0, 100.0, f32::MAX, f32::NAN, 1.0e-3]);
+    (random.unit() - 0.3) * scale
 }

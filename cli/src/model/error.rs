@@ -103,21 +103,13 @@ pub enum Fault {
 impl LoadError {
     /// Puts `fault` on a line; the path follows when the error leaves [`super::Model::load`].
     pub(super) fn at_line(line: usize, fault: Fault) -> Self {
-        LoadError {
-            path: PathBuf::new(),
-            line: Some(line),
-            fault,
-        }
+        LoadError { path: PathBuf::new(), line: Some(line), fault }
     }
 }
 
 impl<F: Into<Fault>> From<F> for LoadError {
     fn from(fault: F) -> Self {
-        LoadError {
-            path: PathBuf::new(),
-            line: None,
-            fault: fault.into(),
-        }
+        LoadError { path: PathBuf::new(), line: None, fault: fault.into() }
     }
 }
 
@@ -144,11 +136,7 @@ const EXCERPT: usize = 100;
 pub(super) fn excerpt(text: &str) -> String {
     let line = text.split_whitespace().collect::<Vec<_>>().join(" ");
     let printable = |c: char| {
-        if c.is_control() {
-            char::REPLACEMENT_CHARACTER
-        } else {
-            c
-        }
+        if c.is_control() { char::REPLACEMENT_CHARACTER } else { c }
     };
     let mut shown: String = line.chars().take(EXCERPT).map(printable).collect();
     if line.chars().nth(EXCERPT).is_some() {

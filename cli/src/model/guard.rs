@@ -15,9 +15,7 @@ thread_local! {
 /// The glTF reader unwraps, indexes and subtracts in places that only a damaged file reaches. A bad
 /// file is an everyday event and must end in one line, so the panic is caught, and the hook that
 /// would print it is silenced: on this thread and during `read` only, so that our own bugs stay loud.
-pub(super) fn guarded<T>(
-    read: impl FnOnce() -> Result<T, LoadError> + UnwindSafe,
-) -> Result<T, LoadError> {
+pub(super) fn guarded<T>(read: impl FnOnce() -> Result<T, LoadError> + UnwindSafe) -> Result<T, LoadError> {
     static QUIET_HOOK: Once = Once::new();
     QUIET_HOOK.call_once(|| {
         let loud = panic::take_hook();

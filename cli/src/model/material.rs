@@ -18,12 +18,6 @@ pub struct Material {
 impl Material {
     /// Matt light grey, for faces of which the file does not say more.
     pub fn neutral(name: impl Into<String>) -> Self {
-        Material {
-            name: name.into(),
-            diffuse: [0.8; 3],
-            specular: [0.0; 3],
-            shininess: 1.0,
-            reflectivity: 0.0,
-        }
+        Material { name: name.into(), diffuse: [0.8; 3], specular: [0.0; 3], shininess: 1.0, reflectivity: 0.0 }
     }
 }

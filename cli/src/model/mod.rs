@@ -40,10 +40,7 @@ pub struct Model {
 impl Model {
     /// Loads a mesh file, its format told by its extension.
     pub fn load(path: &Path) -> Result<Self, LoadError> {
-        read(path).map_err(|error| LoadError {
-            path: path.to_owned(),
-            ..error
-        })
+        read(path).map_err(|error| LoadError { path: path.to_owned(), ..error })
     }
 
     fn push_vertex(&mut self, at: [f32; 3]) -> Result<(), Fault> {
@@ -61,8 +58,7 @@ impl Model {
     /// Cuts a polygon into the fan around its first corner; points and lines leave no triangle.
     fn push_polygon(&mut self, corners: &[u32], material: u16) {
         if let [apex, rim @ ..] = corners {
-            self.triangles
-                .extend(rim.windows(2).map(|edge| [*apex, edge[0], edge[1]]));
+            self.triangles.extend(rim.windows(2).map(|edge| [*apex, edge[0], edge[1]]));
             self.material_ids.resize(self.triangles.len(), material);
         }
     }
@@ -94,11 +90,7 @@ fn read(path: &Path) -> Result<Model, LoadError> {
     if fs::metadata(path)?.is_dir() {
         return Err(io::Error::from(io::ErrorKind::IsADirectory).into());
     }
-    let name = path
-        .file_name()
-        .unwrap_or_default()
-        .to_string_lossy()
-        .to_ascii_lowercase();
+    let name = path.file_name().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
     let (name, zipped) = match name.strip_suffix(".gz") {
         Some(name) => (name, true),
         None => (name.as_str(), false),
@@ -151,16 +143,12 @@ fn survives_damage(name: &str, good: &[u8]) {
         fs::write(&path, bytes).unwrap();
         if let Err(error) = Model::load(&path) {
             let text = error.to_string();
-            assert!(
-                !text.contains('\n') && text.starts_with(path.to_str().unwrap()),
-                "{text:?}"
-            );
+            assert!(!text.contains('\n') && text.starts_with(path.to_str().unwrap()), "{text:?}");
         }
     };
     load_bytes(name, good).unwrap();
     (0..good.len()).for_each(|end| check(&good[..end]));
-    for (place, byte) in (0..good.len()).flat_map(|place| [0, b' ', b'9', 255].map(|b| (place, b)))
-    {
+    for (place, byte) in (0..good.len()).flat_map(|place| [0, b' ', b'9', 255].map(|b| (place, b))) {
         let mut damaged = good.to_vec();
         damaged[place] = byte;
         check(&damaged);
@@ -179,21 +167,13 @@ mod tests {
 
     #[test]
     fn errors_say_what_where_and_how_to_mend() {
-        assert_eq!(
-            complaint("a.obj", b""),
-            ": the file is empty: export the mesh again"
-        );
+        assert_eq!(complaint("a.obj", b""), ": the file is empty: export the mesh again");
         assert!(complaint("a.xyz", b"1 2 3").contains("use a file ending in .obj, .stl, .ply"));
         assert!(complaint("noextension", b"1").contains("unknown mesh format"));
         assert!(complaint("a.obj.gz", b"v 0 0 0").contains("not a whole gzip file"));
         for name in ["a.obj", "a.stl", "a.ply", "a.gltf", "a.glb"] {
             let binary: Vec<u8> = (0..=255).rev().cycle().take(1000).collect();
-            for garbage in [
-                binary.as_slice(),
-                b"Dear diary,\nno mesh today.\n",
-                b"\0",
-                b"{}",
-            ] {
+            for garbage in [binary.as_slice(), b"Dear diary,\nno mesh today.\n", b"\0", b"{}"] {
                 assert!(complaint(name, garbage).contains(": "), "{name}");
             }
         }
@@ -202,25 +182,16 @@ mod tests {
     #[test]
     fn missing_files_and_directories_are_named() {
         let folder = tempfile::tempdir().unwrap();
-        let missing = Model::load(&folder.path().join("no.obj"))
-            .unwrap_err()
-            .to_string();
-        assert!(
-            missing.ends_with("no.obj: no such file: check the path"),
-            "{missing}"
-        );
+        let missing = Model::load(&folder.path().join("no.obj")).unwrap_err().to_string();
+        assert!(missing.ends_with("no.obj: no such file: check the path"), "{missing}");
         let directory = Model::load(folder.path()).unwrap_err().to_string();
-        assert!(
-            directory.ends_with("is a directory: name a file in it"),
-            "{directory}"
-        );
+        assert!(directory.ends_with("is a directory: name a file in it"), "{directory}");
     }
 
     #[test]
     fn gzip_and_upper_case_are_understood() {
         let mut gz = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
-        gz.write_all(b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
-            .unwrap();
+        gz.write_all(b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
         let gz = gz.finish().unwrap();
         assert_eq!(load_bytes("A.OBJ.GZ", &gz).unwrap().triangles, [[0, 1, 2]]);
         survives_damage("a.obj.gz", &gz);

@@ -10,11 +10,7 @@ use super::obj::BYTE_ORDER_MARK;
 pub(super) fn read(text: &str) -> HashMap<String, Material> {
     let mut materials = HashMap::new();
     let mut current: Option<(Material, u32)> = None;
-    for line in text
-        .trim_start_matches(BYTE_ORDER_MARK)
-        .lines()
-        .map(str::trim)
-    {
+    for line in text.trim_start_matches(BYTE_ORDER_MARK).lines().map(str::trim) {
         let (key, value) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
         match (key, &mut current) {
             ("newmtl", _) => {
@@ -68,15 +64,9 @@ mod tests {
                        newmtl grey\nKd 0.25\nKs nan 0 0\nNs x\nillum\nnewmtl";
         let materials = read(library);
         let red = &materials["red wall"];
-        assert_eq!(
-            (red.diffuse, red.specular),
-            ([1.0, 0.5, 0.0], [0.5, 1.0, 0.0])
-        );
+        assert_eq!((red.diffuse, red.specular), ([1.0, 0.5, 0.0], [0.5, 1.0, 0.0]));
         assert_eq!((red.shininess, red.reflectivity), (30.0, 1.0));
-        let grey = Material {
-            diffuse: [0.25; 3],
-            ..Material::neutral("grey")
-        };
+        let grey = Material { diffuse: [0.25; 3], ..Material::neutral("grey") };
         assert_eq!(materials["grey"], grey);
     }
 }

@@ -20,19 +20,13 @@ pub(super) fn read(bytes: &[u8], folder: &Path) -> Result<Model, LoadError> {
     let text = String::from_utf8_lossy(bytes);
     let text = text.trim_start_matches(BYTE_ORDER_MARK);
     // Faces may name vertices that follow them, so count first.
-    let keywords = || {
-        text.lines()
-            .map(|line| line.split_ascii_whitespace().next())
-    };
+    let keywords = || text.lines().map(|line| line.split_ascii_whitespace().next());
     let vertices = keywords().filter(|word| *word == Some("v")).count();
     if vertices == 0 && !keywords().any(|word| word == Some("f")) {
         return Err(Fault::NotA("an OBJ").into());
     }
 
-    let mut model = Model {
-        vertices: Vec::with_capacity(vertices),
-        ..Model::default()
-    };
+    let mut model = Model { vertices: Vec::with_capacity(vertices), ..Model::default() };
     let mut library = HashMap::new();
     let mut ids = HashMap::new();
     let mut current = None;
@@ -41,10 +35,9 @@ pub(super) fn read(bytes: &[u8], folder: &Path) -> Result<Model, LoadError> {
         let mut words = line.split_ascii_whitespace();
         let keyword = words.next();
         let statement = || match keyword {
-            Some("v") => model.push_vertex(position(words).ok_or_else(|| Fault::Syntax {
-                found: line.to_owned(),
-                expected: "three numbers",
-            })?),
+            Some("v") => model.push_vertex(
+                position(words).ok_or_else(|| Fault::Syntax { found: line.to_owned(), expected: "three numbers" })?,
+            ),
             Some("f") => {
                 corners.clear();
                 for word in words.take_while(|word| !word.starts_with('#')) {
@@ -91,34 +84,19 @@ fn position(mut words: SplitAsciiWhitespace<'_>) -> Option<[f32; 3]> {
 /// `v`, `v/vt`, `v//vn` or `v/vt/vn`; negative indices count back from the newest vertex.
 fn corner(word: &str, model: &Model, vertices: usize) -> Result<u32, Fault> {
     let text = word.split('/').next().unwrap_or_default();
-    let index: i64 = text.parse().map_err(|_| Fault::Syntax {
-        found: word.to_owned(),
-        expected: "a vertex number first",
-    })?;
-    let before = if index < 0 {
-        model.vertices.len() as i64
-    } else {
-        -1
-    };
+    let index: i64 =
+        text.parse().map_err(|_| Fault::Syntax { found: word.to_owned(), expected: "a vertex number first" })?;
+    let before = if index < 0 { model.vertices.len() as i64 } else { -1 };
     let place = index.saturating_add(before);
     if (0..vertices as i64).contains(&place) {
         Ok(place as u32)
     } else {
-        Err(Fault::IndexOutOfRange {
-            triangle: model.triangles.len(),
-            index,
-            vertices,
-            first: 1,
-        })
+        Err(Fault::IndexOutOfRange { triangle: model.triangles.len(), index, vertices, first: 1 })
     }
 }
 
 /// The number of the material `name`, a new and neutral one where it was not met before.
-fn material_id(
-    name: &str,
-    ids: &mut HashMap<String, u16>,
-    model: &mut Model,
-) -> Result<u16, Fault> {
+fn material_id(name: &str, ids: &mut HashMap<String, u16>, model: &mut Model) -> Result<u16, Fault> {
     if let Some(id) = ids.get(name) {
         return Ok(*id);
     }
@@ -149,9 +127,7 @@ fn materials(names: &str, folder: &Path, warnings: &mut Vec<String>) -> HashMap<
 
 /// The rest of a line after its keyword: one name, spaces and all.
 fn argument(line: &str) -> &str {
-    line.trim()
-        .split_once(char::is_whitespace)
-        .map_or("", |(_, rest)| rest.trim())
+    line.trim().split_once(char::is_whitespace).map_or("", |(_, rest)| rest.trim())
 }
 
 #[cfg(test)]
@@ -163,22 +139,16 @@ mod tests {
     const SQUARE: &str = "mtllib none.mtl\nv 0 0 0\nv 1 0 0 1\nv 1 1 0 .5 .5 .5\nv 0 1 0\n";
 
     fn complaint(faces: &str) -> String {
-        let text = load_bytes("a.obj", [SQUARE, faces].concat().as_bytes())
-            .unwrap_err()
-            .to_string();
+        let text = load_bytes("a.obj", [SQUARE, faces].concat().as_bytes()).unwrap_err().to_string();
         text.split_once("a.obj").unwrap().1.to_owned()
     }
 
     #[test]
     fn order_duplicates_and_degenerates_are_kept() {
-        let faces =
-            "f 1/1/1 2//2 3/3 4\nusemtl red\nf 1 1 1\nf -1 -2 -3 # back\nf -1 -2 -3\nf 1 2\n";
+        let faces = "f 1/1/1 2//2 3/3 4\nusemtl red\nf 1 1 1\nf -1 -2 -3 # back\nf -1 -2 -3\nf 1 2\n";
         let model = load_bytes("a.obj", [SQUARE, faces].concat().as_bytes()).unwrap();
         assert_eq!(model.vertices[2], [1.0, 1.0, 0.0]);
-        assert_eq!(
-            model.triangles,
-            [[0, 1, 2], [0, 2, 3], [0, 0, 0], [3, 2, 1], [3, 2, 1]]
-        );
+        assert_eq!(model.triangles, [[0, 1, 2], [0, 2, 3], [0, 0, 0], [3, 2, 1], [3, 2, 1]]);
         assert_eq!(model.material_ids, [0, 0, 1, 1, 1]);
         assert_eq!(model.warnings.len(), 2, "{:?}", model.warnings);
     }
@@ -188,11 +158,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         fs::write(folder.path().join("my mesh.mtl"), "newmtl red\nKd 1 0 0\n").unwrap();
         let path = folder.path().join("my mesh.obj");
-        fs::write(
-            &path,
-            "\u{feff}usemtl red\nf 1 2 3\nmtllib my mesh.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0",
-        )
-        .unwrap();
+        fs::write(&path, "\u{feff}usemtl red\nf 1 2 3\nmtllib my mesh.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0").unwrap();
         let model = Model::load(&path).unwrap();
         assert_eq!(model.materials[0].diffuse, [1.0, 0.0, 0.0]);
         assert!(model.warnings.is_empty() && model.material_ids.is_empty());
@@ -214,9 +180,10 @@ mod tests {
 
     #[test]
     fn errors_name_the_line() {
-        assert!(complaint("f 1 2 3\nf 1 2 5\n").starts_with(
-            ":7: triangle 1 names vertex 5, but the file has 4 vertices, counted from 1: "
-        ));
+        assert!(
+            complaint("f 1 2 3\nf 1 2 5\n")
+                .starts_with(":7: triangle 1 names vertex 5, but the file has 4 vertices, counted from 1: ")
+        );
         assert!(complaint("f 0 1 2").starts_with(":6: triangle 0 names vertex 0"));
         assert!(complaint("f -5 1 2").starts_with(":6: triangle 0 names vertex -5"));
         assert!(complaint("f -9223372036854775808 1 2").starts_with(":6: triangle 0 names"));
@@ -229,11 +196,6 @@ mod tests {
 
     #[test]
     fn damage_is_refused_not_panicked_at() {
-        survives_damage(
-            "a.obj",
-            [SQUARE, "usemtl m\nf 1/1/1 2 -1\nf 4 3 2 1"]
-                .concat()
-                .as_bytes(),
-        );
+        survives_damage("a.obj", [SQUARE, "usemtl m\nf 1/1/1 2 -1\nf 4 3 2 1"].concat().as_bytes());
     }
 }

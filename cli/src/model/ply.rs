@@ -32,9 +32,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Model, LoadError> {
     for Face(indices) in faces {
         corners.clear();
         for index in indices {
-            let corner = u32::try_from(index)
-                .ok()
-                .filter(|index| (*index as usize) < count);
+            let corner = u32::try_from(index).ok().filter(|index| (*index as usize) < count);
             corners.push(corner.ok_or(Fault::IndexOutOfRange {
                 triangle: model.triangles.len(),
                 index,
@@ -55,18 +53,13 @@ fn check(element: &ElementDef, size: usize) -> Result<(), Fault> {
             return Err(Fault::Malformed("the vertices lack x, y or z".to_owned()));
         }
         "face" if !FACE_LISTS.into_iter().any(has) => {
-            return Err(Fault::Malformed(
-                "the faces lack a list `vertex_indices`".to_owned(),
-            ));
+            return Err(Fault::Malformed("the faces lack a list `vertex_indices`".to_owned()));
         }
         _ => {}
     }
     // An element takes a byte at least.
     if element.count > size {
-        let missing = format!(
-            "{} of `{}` announced, {size} bytes",
-            element.count, element.name
-        );
+        let missing = format!("{} of `{}` announced, {size} bytes", element.count, element.name);
         return Err(Fault::Truncated { missing });
     }
     Ok(())
@@ -94,10 +87,7 @@ impl From<ParseError> for LoadError {
         };
         let message = message.lines().take(2).map(plain).collect::<Vec<_>>();
         let message = message.join(": ");
-        LoadError {
-            line: error.line(),
-            ..Fault::Malformed(message).into()
-        }
+        LoadError { line: error.line(), ..Fault::Malformed(message).into() }
     }
 }
 
@@ -183,11 +173,7 @@ mod tests {
 
     /// The same mesh with the faces first, odd types and elements to skip.
     fn binary(big: bool) -> Vec<u8> {
-        let mut bytes = header(if big {
-            "binary_big_endian"
-        } else {
-            "binary_little_endian"
-        });
+        let mut bytes = header(if big { "binary_big_endian" } else { "binary_little_endian" });
         let mut push = |little: &[u8]| {
             let mut word = little.to_vec();
             if big {
@@ -197,8 +183,7 @@ mod tests {
         };
         for face in [[0, 1, 2, 3].as_slice(), &[2, 2, 2]] {
             push(&[face.len() as u8]);
-            face.iter()
-                .for_each(|index: &u32| push(&index.to_le_bytes()));
+            face.iter().for_each(|index: &u32| push(&index.to_le_bytes()));
             push(&0.5_f32.to_le_bytes());
         }
         for (x, y) in [(0_i16, 0_f32), (1, 0.0), (1, 1.0), (0, 0.1)] {
@@ -214,12 +199,7 @@ mod tests {
     fn all_encodings_give_the_same_triangles() {
         for bytes in [TEXT.as_bytes(), &binary(false), &binary(true)] {
             let model = load_bytes("a.ply", bytes).unwrap();
-            let square = [
-                [0.0, 0.0, 0.0],
-                [1.0, 0.0, 0.0],
-                [1.0, 1.0, 0.0],
-                [0.0, 0.1, 0.0],
-            ];
+            let square = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 0.1, 0.0]];
             assert_eq!(model.vertices, square);
             assert_eq!(model.triangles, [[0, 1, 2], [0, 2, 3], [2, 2, 2]]);
         }
@@ -228,26 +208,15 @@ mod tests {
     #[test]
     fn errors_name_the_place() {
         let complaint = |from: &str, to: &str| {
-            let text = load_bytes("a.ply", TEXT.replace(from, to).as_bytes())
-                .unwrap_err()
-                .to_string();
+            let text = load_bytes("a.ply", TEXT.replace(from, to).as_bytes()).unwrap_err().to_string();
             text.split_once("a.ply").unwrap().1.to_owned()
         };
         let index = complaint("3 2 2 2", "3 2 -2 2");
-        assert!(
-            index.starts_with(": triangle 2 names vertex -2, but the file has 4"),
-            "{index}"
-        );
+        assert!(index.starts_with(": triangle 2 names vertex -2, but the file has 4"), "{index}");
         let count = complaint("vertex 4", "vertex 4000000000000");
-        assert!(
-            count.contains("4000000000000 of `vertex` announced"),
-            "{count}"
-        );
+        assert!(count.contains("4000000000000 of `vertex` announced"), "{count}");
         let value = complaint("1 1 0 255", "1 1 zero 255");
-        assert!(
-            value.starts_with(":14: ") && value.contains("line: 1 1 zero 255: "),
-            "{value}"
-        );
+        assert!(value.starts_with(":14: ") && value.contains("line: 1 1 zero 255: "), "{value}");
         assert!(complaint("float x", "float u").contains("lack x, y or z"));
         assert!(complaint("vertex_indices", "corners").contains("lack a list"));
         assert!(complaint("4 0 1 2 3\n3 2 2 2\n", "1 0\n2 0 1\n").contains("no triangles"));

@@ -29,10 +29,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Model, LoadError> {
         Err(Fault::Truncated { missing }.into())
     } else {
         let mut model = binary(&bytes[HEAD..size])?;
-        model.warnings.push(format!(
-            "{} bytes after the last triangle",
-            bytes.len() - size
-        ));
+        model.warnings.push(format!("{} bytes after the last triangle", bytes.len() - size));
         Ok(model)
     }
 }
@@ -82,10 +79,7 @@ fn text(text: &str) -> Result<Model, LoadError> {
         }
     }
     if last != "endsolid" {
-        return Err(Fault::Truncated {
-            missing: "no endsolid".to_owned(),
-        }
-        .into());
+        return Err(Fault::Truncated { missing: "no endsolid".to_owned() }.into());
     }
     Ok(welder.model)
 }
@@ -144,10 +138,8 @@ mod tests {
         bytes
     }
 
-    const PAIR: [[[f32; 3]; 3]; 2] = [
-        [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
-        [[1.0, 0.0, 0.0], [0.0, 0.0, 0.0], [-0.0, 1.0, 0.0]],
-    ];
+    const PAIR: [[[f32; 3]; 3]; 2] =
+        [[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], [[1.0, 0.0, 0.0], [0.0, 0.0, 0.0], [-0.0, 1.0, 0.0]]];
 
     #[test]
     fn both_kinds_are_welded_by_bits() {
@@ -163,33 +155,15 @@ mod tests {
     fn errors_name_the_place() {
         let complaint = |bytes: &[u8]| load_bytes("a.stl", bytes).unwrap_err().to_string();
         let cut = complaint(&binary_file(b"", &PAIR)[..150]);
-        assert!(
-            cut.contains("2 triangles announced, 1 in its 150 bytes"),
-            "{cut}"
-        );
+        assert!(cut.contains("2 triangles announced, 1 in its 150 bytes"), "{cut}");
         let bad = complaint(TEXT.replace("vertex 1 0 0", "vertex 1 0 o").as_bytes());
-        assert!(
-            bad.contains("a.stl:5: `vertex 1 0 o` needs three numbers"),
-            "{bad}"
-        );
-        let four = complaint(
-            TEXT.replace("vertex 1 0 0", "vertex 1 0 0\nvertex 1 0 0")
-                .as_bytes(),
-        );
-        assert!(
-            four.contains("a.stl:8: `endloop` needs three vertices"),
-            "{four}"
-        );
+        assert!(bad.contains("a.stl:5: `vertex 1 0 o` needs three numbers"), "{bad}");
+        let four = complaint(TEXT.replace("vertex 1 0 0", "vertex 1 0 0\nvertex 1 0 0").as_bytes());
+        assert!(four.contains("a.stl:8: `endloop` needs three vertices"), "{four}");
         let open = complaint(TEXT.replacen("endloop", "", 1).as_bytes());
-        assert!(
-            open.contains("a.stl:8: `endfacet` needs an endloop"),
-            "{open}"
-        );
+        assert!(open.contains("a.stl:8: `endfacet` needs an endloop"), "{open}");
         let nan = complaint(&binary_file(b"", &[[[f32::NAN; 3]; 3]]));
-        assert!(
-            nan.contains("vertex 0 (counted from 0) is not finite"),
-            "{nan}"
-        );
+        assert!(nan.contains("vertex 0 (counted from 0) is not finite"), "{nan}");
         assert!(complaint(&binary_file(b"", &[])).contains("no triangles"));
     }
 
@@ -197,10 +171,7 @@ mod tests {
     fn bytes_after_the_end_are_a_warning() {
         let mut bytes = binary_file(b"", &PAIR);
         bytes.extend(b"!!");
-        assert_eq!(
-            load_bytes("a.stl", &bytes).unwrap().warnings,
-            ["2 bytes after the last triangle"]
-        );
+        assert_eq!(load_bytes("a.stl", &bytes).unwrap().warnings, ["2 bytes after the last triangle"]);
     }
 
     #[test]

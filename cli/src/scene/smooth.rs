@@ -1,9 +1,4 @@
-use hitscan::{
-    Hit, Mesh, PreparedRay, Primitives, Ray, Span,
-    geometry::Aabb,
-    glam::Vec3,
-    primitives::Surface,
-};
+use hitscan::{Hit, Mesh, PreparedRay, Primitives, Ray, Span, geometry::Aabb, glam::Vec3, primitives::Surface};
 
 /// The least cosine between a mirrored ray and the surface it leaves.
 const GRAZING: f32 = 0.02;
@@ -51,7 +46,9 @@ impl Primitives for Smooth<'_> {
     fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
         let surface = self.mesh.surface(ray, hit);
         match self.normal(&surface, hit.primitive) {
-            Some(normal) => Surface { shading_normal: above(&surface, ray.direction.normalize_or_zero(), normal), ..surface },
+            Some(normal) => {
+                Surface { shading_normal: above(&surface, ray.direction.normalize_or_zero(), normal), ..surface }
+            }
             None => surface,
         }
     }

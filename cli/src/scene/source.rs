@@ -10,7 +10,7 @@ use hitscan::{
 
 use super::{Built, Palette, Preset, Structure};
 use crate::{
-    failure::Failure,
+    failure::{Failure, warn},
     input,
     model::{Fault, LoadError, Model},
     progress::Progress,
@@ -57,13 +57,18 @@ impl Geometry {
     fn load(path: &Path) -> Result<Self, Failure> {
         let model = Model::load(path)?;
         for warning in &model.warnings {
-            eprintln!("hitscan: warning: {}: {warning}", path.display());
+            warn(&format!("{}: {warning}", path.display()));
         }
         let vertices = model.vertices.into_iter().map(Vec3::from_array).collect();
         let palette = Palette::of_model(&model.materials, model.material_ids);
         let name = path.to_string_lossy().to_ascii_lowercase();
         let y_up = [".gltf", ".glb", ".gltf.gz", ".glb.gz"].iter().any(|ending| name.ends_with(ending));
         Ok(Self { y_up, ..Self::new(vertices, model.triangles, palette) })
+    }
+
+    /// How many triangles there are.
+    pub fn len(&self) -> usize {
+        self.wide.len() + self.narrow.len()
     }
 
     /// The triangles, checked.

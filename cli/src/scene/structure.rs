@@ -1,11 +1,6 @@
 use std::str::FromStr;
 
-use hitscan::{
-    Error, KdTree, List, Primitives, Scene,
-    accel::kdtree,
-    bake,
-    error::BuildError,
-};
+use hitscan::{Error, KdTree, List, Primitives, Scene, accel::kdtree, bake, error::BuildError};
 
 use super::Queries;
 use crate::{failure::Failure, progress::Progress, units};

@@ -8,16 +8,9 @@ use crate::model::{Fault, read_companion};
 
 /// Reads a buffer from the file itself, from its own address, or from a file beside it; never from
 /// a network.
-pub(super) fn load_buffer(
-    buffer: &gltf::Buffer<'_>,
-    blob: Option<&[u8]>,
-    folder: &Path,
-) -> Result<Vec<u8>, Fault> {
+pub(super) fn load_buffer(buffer: &gltf::Buffer<'_>, blob: Option<&[u8]>, folder: &Path) -> Result<Vec<u8>, Fault> {
     let (uri, data) = match buffer.source() {
-        Source::Bin => (
-            "BIN",
-            blob.map(<[u8]>::to_vec).ok_or("no BIN chunk".to_owned()),
-        ),
+        Source::Bin => ("BIN", blob.map(<[u8]>::to_vec).ok_or("no BIN chunk".to_owned())),
         Source::Uri(uri) if uri.starts_with("data:") => ("data:", decode(uri)),
         Source::Uri(uri) if uri.contains("://") => (uri, Err("not a local file".to_owned())),
         Source::Uri(uri) => {
@@ -30,10 +23,7 @@ pub(super) fn load_buffer(
         size if size < buffer.length() => Err(format!("{size} of {} bytes", buffer.length())),
         _ => Ok(data),
     });
-    data.map_err(|reason| Fault::Buffer {
-        uri: uri.to_owned(),
-        reason,
-    })
+    data.map_err(|reason| Fault::Buffer { uri: uri.to_owned(), reason })
 }
 
 fn decode(uri: &str) -> Result<Vec<u8>, String> {

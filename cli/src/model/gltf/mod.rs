@@ -31,10 +31,7 @@ pub(super) fn read(bytes: &[u8], folder: &Path) -> Result<Model, LoadError> {
     for material in document.materials() {
         model.push_material(shading(&material))?;
     }
-    let Some(scene) = document
-        .default_scene()
-        .or_else(|| document.scenes().next())
-    else {
+    let Some(scene) = document.default_scene().or_else(|| document.scenes().next()) else {
         return Err(Fault::NoTriangles.into());
     };
     // Depth first, children in the file's order; a stack of our own, as files can be deep.
@@ -43,13 +40,9 @@ pub(super) fn read(bytes: &[u8], folder: &Path) -> Result<Model, LoadError> {
     let mut visits_left = document.nodes().len();
     while let Some((node, parent)) = stack.pop() {
         // A node has one parent at most, so more visits than nodes mean a loop.
-        visits_left = visits_left
-            .checked_sub(1)
-            .ok_or_else(|| Fault::Malformed("the nodes do not form a tree".to_owned()))?;
-        let local = node
-            .transform()
-            .matrix()
-            .map(|column| column.map(f64::from));
+        visits_left =
+            visits_left.checked_sub(1).ok_or_else(|| Fault::Malformed("the nodes do not form a tree".to_owned()))?;
+        let local = node.transform().matrix().map(|column| column.map(f64::from));
         let world = parent * DMat4::from_cols_array_2d(&local);
         for primitive in node.mesh().iter().flat_map(|mesh| mesh.primitives()) {
             push_primitive(&mut model, &primitive, &buffers, world)?;
@@ -70,10 +63,7 @@ fn push_primitive(
     let Some(positions) = primitive.get(&gltf::Semantic::Positions) else {
         return Ok(());
     };
-    if !matches!(
-        mode,
-        Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan
-    ) {
+    if !matches!(mode, Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan) {
         return Ok(());
     }
     let damaged = |what: &str, accessor: &gltf::Accessor<'_>| {
@@ -86,28 +76,18 @@ fn push_primitive(
     }
     let reader = primitive.reader(|buffer| buffers.get(buffer.index()).map(Vec::as_slice));
     let first = model.vertices.len();
-    for at in reader
-        .read_positions()
-        .ok_or_else(|| damaged("positions", &positions))?
-    {
+    for at in reader.read_positions().ok_or_else(|| damaged("positions", &positions))? {
         // A matrix would turn -0.0 into 0.0 even at rest.
         model.push_vertex(match world == DMat4::IDENTITY {
             true => at,
-            false => world
-                .transform_point3(DVec3::from(at.map(f64::from)))
-                .as_vec3()
-                .to_array(),
+            false => world.transform_point3(DVec3::from(at.map(f64::from))).as_vec3().to_array(),
         })?;
     }
     let vertices = model.vertices.len() - first;
     let indices: Vec<u32> = match primitive.indices() {
         None => (0..vertices as u32).collect(),
         Some(accessor) if accessor.view().is_none() => return Err(damaged("indices", &accessor)),
-        Some(accessor) => reader
-            .read_indices()
-            .ok_or_else(|| damaged("indices", &accessor))?
-            .into_u32()
-            .collect(),
+        Some(accessor) => reader.read_indices().ok_or_else(|| damaged("indices", &accessor))?.into_u32().collect(),
     };
 
     let material = match primitive.material().index() {
@@ -115,17 +95,9 @@ fn push_primitive(
         None => neutral_id(model)?,
     };
     let mut push = |corners: [u32; 3]| {
-        if let Some(index) = corners
-            .into_iter()
-            .find(|index| *index as usize >= vertices)
-        {
+        if let Some(index) = corners.into_iter().find(|index| *index as usize >= vertices) {
             let (triangle, index) = (model.triangles.len(), i64::from(index));
-            return Err(Fault::IndexOutOfRange {
-                triangle,
-                index,
-                vertices,
-                first: 0,
-            });
+            return Err(Fault::IndexOutOfRange { triangle, index, vertices, first: 0 });
         }
         model.push_polygon(&corners.map(|index| first as u32 + index), material);
         Ok(())
@@ -133,31 +105,19 @@ fn push_primitive(
     match mode {
         Mode::TriangleStrip => indices.windows(3).enumerate().try_for_each(|(n, w)| {
             // Every other triangle of a strip is turned, to keep the winding.
-            push(if n % 2 == 0 {
-                [w[0], w[1], w[2]]
-            } else {
-                [w[0], w[2], w[1]]
-            })
+            push(if n % 2 == 0 { [w[0], w[1], w[2]] } else { [w[0], w[2], w[1]] })
         }),
-        Mode::TriangleFan => indices
-            .get(1..)
-            .unwrap_or_default()
-            .windows(2)
-            .try_for_each(|w| push([w[0], w[1], indices[0]])),
-        _ => indices
-            .chunks_exact(3)
-            .try_for_each(|w| push([w[0], w[1], w[2]])),
+        Mode::TriangleFan => {
+            indices.get(1..).unwrap_or_default().windows(2).try_for_each(|w| push([w[0], w[1], indices[0]]))
+        }
+        _ => indices.chunks_exact(3).try_for_each(|w| push([w[0], w[1], w[2]])),
     }
 }
 
 /// The material of primitives without one, made at its first use.
 fn neutral_id(model: &mut Model) -> Result<u16, Fault> {
     let neutral = Material::neutral("");
-    match model
-        .materials
-        .iter()
-        .rposition(|material| *material == neutral)
-    {
+    match model.materials.iter().rposition(|material| *material == neutral) {
         Some(id) => Ok(id as u16),
         None => model.push_material(neutral),
     }

@@ -6,9 +6,7 @@ use std::fs;
 
 /// Four corners of a square and the indices 0 1 2 0 2 3.
 fn payload() -> Vec<u8> {
-    let corners = [
-        0.0_f32, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0, 0.0,
-    ];
+    let corners = [0.0_f32, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0, 0.0];
     let mut bytes: Vec<u8> = corners.iter().flat_map(|x| x.to_le_bytes()).collect();
     bytes.extend([0, 1, 2, 0, 2, 3].map(u16::to_le_bytes).as_flattened());
     bytes
@@ -29,30 +27,17 @@ fn json(uri: &str, mode: u32) -> String {
 }
 
 fn embedded(mode: u32) -> String {
-    let bytes: String = payload()
-        .iter()
-        .map(|byte| format!("%{byte:02x}"))
-        .collect();
-    json(
-        &format!(r#""uri":"data:application/octet-stream,{bytes}","#),
-        mode,
-    )
+    let bytes: String = payload().iter().map(|byte| format!("%{byte:02x}")).collect();
+    json(&format!(r#""uri":"data:application/octet-stream,{bytes}","#), mode)
 }
 
 fn binary() -> Vec<u8> {
     let mut json = json("", 4).into_bytes();
     json.resize(json.len().next_multiple_of(4), b' ');
-    let chunk =
-        |kind: &[u8], data: &[u8]| [&(data.len() as u32).to_le_bytes(), kind, data].concat();
+    let chunk = |kind: &[u8], data: &[u8]| [&(data.len() as u32).to_le_bytes(), kind, data].concat();
     let chunks = [chunk(b"JSON", &json), chunk(b"BIN\0", &payload())].concat();
     let size = (chunks.len() + 12) as u32;
-    [
-        b"glTF",
-        &2_u32.to_le_bytes()[..],
-        &size.to_le_bytes(),
-        &chunks,
-    ]
-    .concat()
+    [b"glTF", &2_u32.to_le_bytes()[..], &size.to_le_bytes(), &chunks].concat()
 }
 
 #[test]
@@ -68,10 +53,7 @@ fn nodes_place_their_meshes() {
     ] {
         assert_eq!(model.vertices[2], [1.0, 1.0, 5.0]);
         assert_eq!(model.vertices[6], [3.0, 3.0, 5.0]);
-        assert_eq!(
-            model.triangles,
-            [[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7]]
-        );
+        assert_eq!(model.triangles, [[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7]]);
         let gold = &model.materials[0];
         assert_eq!((gold.name.as_str(), gold.diffuse), ("gold", [0.0; 3]));
         assert_eq!((gold.specular, gold.reflectivity), ([1.0, 0.5, 0.0], 0.75));
@@ -80,44 +62,23 @@ fn nodes_place_their_meshes() {
 
 #[test]
 fn strips_and_fans_become_triangles() {
-    let first_mesh = |mode| {
-        load_bytes("a.gltf", embedded(mode).as_bytes())
-            .unwrap()
-            .triangles
-    };
-    assert_eq!(
-        first_mesh(5)[..4],
-        [[0, 1, 2], [1, 0, 2], [2, 0, 2], [0, 3, 2]]
-    );
-    assert_eq!(
-        first_mesh(6)[..4],
-        [[1, 2, 0], [2, 0, 0], [0, 2, 0], [2, 3, 0]]
-    );
+    let first_mesh = |mode| load_bytes("a.gltf", embedded(mode).as_bytes()).unwrap().triangles;
+    assert_eq!(first_mesh(5)[..4], [[0, 1, 2], [1, 0, 2], [2, 0, 2], [0, 3, 2]]);
+    assert_eq!(first_mesh(6)[..4], [[1, 2, 0], [2, 0, 0], [0, 2, 0], [2, 3, 0]]);
 }
 
 #[test]
 fn errors_say_what_and_where() {
     let complaint = |from: &str, to: &str| {
         let text = embedded(4).replacen(from, to, 1);
-        load_bytes("a.gltf", text.as_bytes())
-            .unwrap_err()
-            .to_string()
+        load_bytes("a.gltf", text.as_bytes()).unwrap_err().to_string()
     };
     let index = complaint("%02%00%00", "%09%00%00");
-    assert!(
-        index.contains("triangle 0 names vertex 9, but the file has 4 vertices"),
-        "{index}"
-    );
+    assert!(index.contains("triangle 0 names vertex 9, but the file has 4 vertices"), "{index}");
     let nan = complaint("%80%3f", "%c0%7f");
-    assert!(
-        nan.contains("vertex 1 (counted from 0) is not finite"),
-        "{nan}"
-    );
+    assert!(nan.contains("vertex 1 (counted from 0) is not finite"), "{nan}");
     let short = complaint("\"byteLength\":60", "\"byteLength\":61");
-    assert!(
-        short.contains("buffer `data:` cannot be read (60 of 61 bytes)"),
-        "{short}"
-    );
+    assert!(short.contains("buffer `data:` cannot be read (60 of 61 bytes)"), "{short}");
     let cycle = complaint(r#""scale":[3,3,3]"#, r#""children":[0]"#);
     assert!(cycle.contains("do not form a tree"), "{cycle}");
     let count = complaint("\"count\":4", "\"count\":4000000000");
@@ -127,11 +88,7 @@ fn errors_say_what_and_where() {
     let remote = load_bytes("a.gltf", json(r#""uri":"https://a/b","#, 4).as_bytes());
     assert!(remote.unwrap_err().to_string().contains("not a local file"));
     let lost = load_bytes("a.gltf", json(r#""uri":"b.bin","#, 4).as_bytes());
-    assert!(
-        lost.unwrap_err()
-            .to_string()
-            .contains("buffer `b.bin` cannot be read")
-    );
+    assert!(lost.unwrap_err().to_string().contains("buffer `b.bin` cannot be read"));
     assert!(complaint("\"mode\":4", "\"mode\":1").contains("no triangles"));
 }
 

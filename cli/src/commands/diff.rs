@@ -1,0 +1,24 @@
+use std::{path::PathBuf, process::ExitCode};
+
+use super::print;
+use crate::{difference::diff, failure::Failure, hits::read_hits};
+
+/// Counts the rays that two files of hits answer differently, bit for bit, and shows the first.
+///
+/// Exit code 0 if there are none, 1 if there are some, 2 if a file cannot be read.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Example: hitscan diff list.hits kdtree.hits")]
+pub struct Diff {
+    /// Hits as `hitscan cast` writes them; - for standard input
+    a: PathBuf,
+    /// Hits to compare them with
+    b: PathBuf,
+}
+
+impl Diff {
+    pub fn run(&self) -> Result<ExitCode, Failure> {
+        let difference = diff(&read_hits(&self.a)?, &read_hits(&self.b)?);
+        print(&difference.to_string())?;
+        Ok(ExitCode::from(u8::from(!difference.is_none())))
+    }
+}

@@ -1,0 +1,92 @@
+use std::{fmt::Write as _, path::PathBuf, process::ExitCode};
+
+use hitscan::{Primitives, asset::Asset, geometry::Aabb};
+
+use super::print;
+use crate::{
+    failure::Failure,
+    progress::Progress,
+    scene::{Anatomy, Built, Source, StructureArgs, View},
+    units::count,
+};
+
+/// Describes a mesh or an asset: counts, bounds, whether it is closed, faults, sections, and what rays will cost.
+///
+/// A mesh is first put under the structure that is asked for.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Example: hitscan info bunny.obj.gz")]
+pub struct Info {
+    /// Mesh (.obj, .stl, .ply, .gltf, .glb, each also with .gz) or baked asset
+    #[arg(value_name = "MODEL|ASSET")]
+    model: PathBuf,
+    #[command(flatten)]
+    structure: StructureArgs,
+}
+
+impl Info {
+    pub fn run(&self) -> Result<ExitCode, Failure> {
+        let source = Source::load(&self.model)?;
+        let view = source.view(&self.model)?;
+        let built = view.build(self.structure.structure, self.structure.preset)?;
+        let progress = Progress::spinner("looking at the triangles …");
+        let anatomy = Anatomy::of(&view.mesh);
+        progress.finish();
+
+        let mut text = format!("{}\n", self.model.display());
+        describe_mesh(&mut text, &view, &anatomy);
+        describe_structure(&mut text, &built, anatomy.triangles)?;
+        if let Source::Asset(words) = &source {
+            describe_sections(&mut text, words);
+        }
+        print(&text)?;
+        Ok(ExitCode::SUCCESS)
+    }
+}
+
+/// Adds a line `what  value`. Writing to a string cannot fail.
+fn line(text: &mut String, what: &str, value: impl std::fmt::Display) {
+    let _ = writeln!(text, "  {what:<20} {value}");
+}
+
+fn describe_mesh(text: &mut String, view: &View<'_>, anatomy: &Anatomy) {
+    let Anatomy { triangles, vertices, places, boundary_edges, non_manifold_edges, degenerate, duplicate } = *anatomy;
+    let bounds = Aabb::around((0..view.mesh.len()).flat_map(|index| {
+        let triangle = view.mesh.triangle(index);
+        [triangle.a, triangle.b, triangle.c]
+    }));
+    line(text, "triangles", count(triangles));
+    line(text, "vertices", format!("{} ({} different places in use)", count(vertices), count(places)));
+    line(text, "bounds", format!("{} to {}", bounds.min, bounds.max));
+    line(text, "size", bounds.size());
+    line(text, "closed", if anatomy.is_closed() { "yes" } else { "no" });
+    line(text, "boundary edges", count(boundary_edges));
+    line(text, "non-manifold edges", count(non_manifold_edges));
+    line(text, "without area", count(degenerate));
+    line(text, "duplicates", count(duplicate));
+}
+
+fn describe_structure(text: &mut String, built: &Built, primitives: usize) -> Result<(), Failure> {
+    line(text, "structure", built.describe(primitives));
+    if let Some(tree) = built.tree()? {
+        let (nodes, tests) = tree.expected_work();
+        line(text, "nodes", count(tree.node_count()));
+        line(text, "references", count(tree.reference_count()));
+        line(text, "depth", tree.depth());
+        line(text, "expected per ray", format!("{nodes:.1} nodes, {tests:.1} tests, if nothing is hit"));
+    } else {
+        line(text, "expected per ray", format!("{} tests", count(primitives)));
+    }
+    Ok(())
+}
+
+fn describe_sections(text: &mut String, words: &[u32]) {
+    let Ok(asset) = Asset::from_words(words) else { return };
+    let mut rest = words.len();
+    for section in asset.sections() {
+        rest -= section.words.len();
+        let bytes = format!("{} bytes, version {}", count(section.words.len() * 4), section.version);
+        line(text, &section.kind.to_string(), bytes);
+    }
+    line(text, "header and padding", format!("{} bytes", count(rest * 4)));
+    line(text, "total", format!("{} bytes", count(words.len() * 4)));
+}

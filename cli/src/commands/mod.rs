@@ -1,0 +1,69 @@
+//! The subcommands: their options, and what they do with them.
+
+mod bake;
+mod cast;
+mod diff;
+mod info;
+mod render;
+
+use std::{num::NonZeroUsize, path::Path, process::ExitCode, thread};
+
+use crate::{failure::Failure, output::write_atomically};
+
+/// What to do.
+#[derive(Debug, clap::Subcommand)]
+pub enum Command {
+    /// Draw a mesh, an asset or the built-in scene into a PNG
+    Render(render::Render),
+    /// Turn a mesh into the asset that firmware includes
+    Bake(bake::Bake),
+    /// Describe a mesh or an asset
+    Info(info::Info),
+    /// Cast rays from a file
+    Cast(cast::Cast),
+    /// Compare two files of hits
+    Diff(diff::Diff),
+}
+
+impl Command {
+    /// Their names, in order.
+    pub const NAMES: [&'static str; 5] = ["render", "bake", "info", "cast", "diff"];
+
+    /// Does it; the code to exit with.
+    pub fn run(&self) -> Result<ExitCode, Failure> {
+        match self {
+            Self::Render(render) => render.run(),
+            Self::Bake(bake) => bake.run(),
+            Self::Info(info) => info.run(),
+            Self::Cast(cast) => cast.run(),
+            Self::Diff(diff) => diff.run(),
+        }
+    }
+}
+
+/// Prints a report on standard output.
+fn print(text: &str) -> Result<(), Failure> {
+    Ok(write_atomically(Path::new("-"), |out| out.write_all(text.as_bytes()))?)
+}
+
+/// The option that sets how many threads work.
+#[derive(Clone, Copy, Debug, clap::Args)]
+struct Threads {
+    /// Threads to work on; the result is the same for any number [default: one per core]
+    #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+}
+
+impl Threads {
+    /// How many there are to be.
+    fn count(self) -> usize {
+        let cores = || thread::available_parallelism().map_or(1, NonZeroUsize::get);
+        self.threads.map_or_else(cores, usize::from)
+    }
+
+    /// A pool of as many.
+    fn pool(self) -> Result<rayon::ThreadPool, Failure> {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(self.count()).build();
+        pool.map_err(|error| Failure::new(format!("no threads: {error}"), "ask for fewer with --threads"))
+    }
+}

@@ -1,0 +1,162 @@
+use std::{
+    sync::atomic::{AtomicU64, Ordering::Relaxed},
+    time::Instant,
+};
+
+use hitscan::{Hit, Ray, geometry::Aabb, primitives::Surface, render::Caster};
+
+/// The most reflections that can be told apart, and one for the camera's own rays.
+pub const DEPTHS: usize = 17;
+
+/// Of so many queries of a thread one is timed. A prime, so that it does not fall into step with the samples of a pixel.
+const SAMPLED: u64 = 61;
+
+/// A scene that counts the rays cast at it and times some of them: a decorator, so that nobody else pays.
+#[derive(Debug)]
+pub struct Counted<'a, S: ?Sized> {
+    scene: &'a S,
+    /// One per thread of the pool, so that no thread waits for another's counts.
+    counters: Vec<Counter>,
+}
+
+/// The counts of one thread, alone on its cache lines.
+#[derive(Debug, Default)]
+#[repr(align(128))]
+struct Counter {
+    closest: [AtomicU64; DEPTHS],
+    any: [AtomicU64; DEPTHS],
+    queries: AtomicU64,
+    sampled: AtomicU64,
+    nanoseconds: AtomicU64,
+}
+
+/// What was counted, over all threads.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Tally {
+    /// Rays by depth: those of the camera, then those reflected so often.
+    pub closest: [u64; DEPTHS],
+    /// Shadow rays by depth.
+    pub shadow: [u64; DEPTHS],
+    /// Seconds spent in all queries, over all threads, estimated from the sampled ones.
+    pub seconds: f64,
+}
+
+impl Tally {
+    /// All rays.
+    pub fn rays(&self) -> u64 {
+        self.closest.iter().chain(&self.shadow).sum()
+    }
+}
+
+impl<'a, S: ?Sized> Counted<'a, S> {
+    /// The scene, asked by `threads` threads of a rayon pool.
+    pub fn new(scene: &'a S, threads: usize) -> Self {
+        Self { scene, counters: (0..threads.max(1)).map(|_| Counter::default()).collect() }
+    }
+
+    /// What was counted so far.
+    pub fn tally(&self) -> Tally {
+        let mut tally = Tally::default();
+        let clock = clock_nanoseconds();
+        for counter in &self.counters {
+            for depth in 0..DEPTHS {
+                tally.closest[depth] += counter.closest[depth].load(Relaxed);
+                tally.shadow[depth] += counter.any[depth].load(Relaxed);
+            }
+            let [queries, sampled, nanoseconds] =
+                [&counter.queries, &counter.sampled, &counter.nanoseconds].map(|cell| cell.load(Relaxed) as f64);
+            if sampled > 0.0 {
+                let mean = (nanoseconds / sampled - clock).max(0.0);
+                tally.seconds += mean * queries * 1.0e-9;
+            }
+        }
+        tally
+    }
+
+    fn counted<T>(&self, kind: impl Fn(&Counter) -> &[AtomicU64; DEPTHS], depth: u32, query: impl FnOnce() -> T) -> T {
+        let thread = rayon::current_thread_index().unwrap_or(0) % self.counters.len();
+        let counter = &self.counters[thread];
+        add(&kind(counter)[(depth as usize).min(DEPTHS - 1)], 1);
+        if !add(&counter.queries, 1).is_multiple_of(SAMPLED) {
+            return query();
+        }
+        let begun = Instant::now();
+        let answer = query();
+        let nanoseconds = begun.elapsed().as_nanos() as u64;
+        add(&counter.sampled, 1);
+        add(&counter.nanoseconds, nanoseconds);
+        answer
+    }
+}
+
+/// Adds to a cell that only this thread writes, without the price of an atomic addition; what was there before.
+fn add(cell: &AtomicU64, more: u64) -> u64 {
+    let before = cell.load(Relaxed);
+    cell.store(before + more, Relaxed);
+    before
+}
+
+/// What reading the clock twice takes, which is not the queries' fault.
+fn clock_nanoseconds() -> f64 {
+    const READINGS: u32 = 1000;
+    let total: u128 = (0..READINGS).map(|_| Instant::now().elapsed().as_nanos()).sum();
+    total as f64 / f64::from(READINGS)
+}
+
+impl<S: Caster + ?Sized> Caster for Counted<'_, S> {
+    fn closest_hit(&self, ray: &Ray, depth: u32) -> Option<Hit> {
+        self.counted(|counter| &counter.closest, depth, || self.scene.closest_hit(ray, depth))
+    }
+
+    fn any_hit(&self, ray: &Ray, depth: u32) -> bool {
+        self.counted(|counter| &counter.any, depth, || self.scene.any_hit(ray, depth))
+    }
+
+    fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
+        self.scene.surface(ray, hit)
+    }
+
+    fn bounds(&self) -> Aabb {
+        self.scene.bounds()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use hitscan::glam::Vec3;
+
+    use super::*;
+
+    struct Nothing;
+
+    impl Caster for Nothing {
+        fn closest_hit(&self, _: &Ray, _: u32) -> Option<Hit> {
+            None
+        }
+        fn any_hit(&self, _: &Ray, _: u32) -> bool {
+            false
+        }
+        fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
+            Surface::facing(ray, hit.t)
+        }
+        fn bounds(&self) -> Aabb {
+            Aabb::EMPTY
+        }
+    }
+
+    #[test]
+    fn every_ray_is_counted_once() {
+        let counted = Counted::new(&Nothing, 2);
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap();
+        let ray = Ray::new(Vec3::ZERO, Vec3::X);
+        pool.broadcast(|_| {
+            for depth in 0..3 {
+                (0..100).for_each(|_| assert!(counted.closest_hit(&ray, depth).is_none()));
+            }
+            assert!(!counted.any_hit(&ray, 99));
+        });
+        let tally = counted.tally();
+        assert_eq!(tally.closest[..4], [200, 200, 200, 0]);
+        assert_eq!((tally.shadow[DEPTHS - 1], tally.rays()), (2, 602));
+    }
+}
