@@ -41,6 +41,24 @@ pub enum Mutant {
 
 use Mutant::*;
 
+impl Mutant {
+    /// All that are wrong.
+    pub const ALL: [Self; 12] = [
+        ContainmentForOverflow,
+        CutExitsForOverflow,
+        OverflowReachesBack,
+        NoWidening,
+        FactorOnly,
+        NoTiny,
+        ThinSlack,
+        NanSkips,
+        EnterAtExit,
+        PruneAtBest,
+        NoClamp,
+        RejectAtBest,
+    ];
+}
+
 /// A shape that the walk can test.
 #[derive(Clone, Copy, Debug)]
 pub enum Shape {

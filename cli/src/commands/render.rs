@@ -1,5 +1,6 @@
 use std::{
     fmt::Write as _,
+    iter,
     path::{Path, PathBuf},
     process::ExitCode,
     time::Instant,
@@ -60,6 +61,9 @@ pub struct Render {
     /// The terms of light to compute, separated by commas
     #[arg(long, value_name = "TERMS", value_delimiter = ',', default_values = ["all"])]
     terms: Vec<Term>,
+    /// Shade the triangles of a mesh or an asset as if they were curved, but for sharp edges
+    #[arg(long)]
+    smooth: bool,
     /// No plate below a mesh or an asset
     #[arg(long)]
     no_ground: bool,
@@ -130,12 +134,15 @@ impl Render {
         let source = Source::load(path)?;
         let view = source.view(path)?;
         let built = view.build(self.structure.structure, self.structure.preset)?;
-        let scene = built.scene(&view.mesh)?;
+        let normals = if self.smooth { Smooth::normals(&view.mesh) } else { Vec::new() };
+        let shaded = Smooth::new(view.mesh, &normals);
+        let scene = built.scene(&shaded)?;
         let primitives = view.mesh.len();
 
         let bounds = scene.bounds();
         let up = self.up.unwrap_or_else(|| if view.y_up { Up::Y } else { Up::guess(&bounds) });
-        let viewpoint = Viewpoint::new(self.camera, &bounds, up, self.aspect());
+        let points = view.mesh.vertices().iter().copied().filter(|point| bounds.contains(*point));
+        let viewpoint = Viewpoint::new(self.camera, &bounds, up, self.aspect(), points);
         let lighting = Lighting::studio(&bounds, &viewpoint);
         let palette = dress(&view);
         let grounded = Grounded::new(&*scene, up as usize, primitives)?;
@@ -162,7 +169,7 @@ impl Render {
 
         let camera = self.camera.unwrap_or(BuiltIn::CAMERA);
         let up = self.up.unwrap_or(Up::Y);
-        let viewpoint = Viewpoint::new(Some(camera), &scene.bounds(), up, self.aspect());
+        let viewpoint = Viewpoint::new(Some(camera), &scene.bounds(), up, self.aspect(), iter::empty());
         let lighting = BuiltIn::lighting();
         let materials = builtin.palette.as_materials();
         let shot = Shot { scene: &*scene, camera: viewpoint.camera, lighting: &lighting, materials };

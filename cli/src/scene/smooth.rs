@@ -1,7 +1,13 @@
+use std::collections::HashMap;
+
 use hitscan::{Hit, Mesh, PreparedRay, Primitives, Ray, Span, geometry::Aabb, glam::Vec3, primitives::Surface};
 
 /// The least cosine between a mirrored ray and the surface it leaves.
 const GRAZING: f32 = 0.02;
+
+/// The least cosine between a triangle's normal and that of its corners, 35 degrees: beyond, it is part of an edge that is
+/// meant.
+const CREASE: f32 = 0.82;
 
 /// A mesh that is shaded as if it were curved: a decorator that blends the normals of a triangle's corners.
 ///
@@ -13,15 +19,30 @@ pub struct Smooth<'a> {
 }
 
 impl<'a> Smooth<'a> {
-    /// The mesh with a normal for each vertex; a zero normal leaves the triangles around it flat.
+    /// The mesh with a normal for each vertex; a missing or zero normal leaves the triangles around it flat.
     pub fn new(mesh: Mesh<'a>, normals: &'a [Vec3]) -> Self {
         Self { mesh, normals }
+    }
+
+    /// The mean normal of the triangles around each vertex, weighted by their areas; what stands at the same place is one
+    /// vertex.
+    pub fn normals(mesh: &Mesh<'_>) -> Vec<Vec3> {
+        let key = |at: Vec3| (at + Vec3::ZERO).to_array().map(f32::to_bits);
+        let mut sums = HashMap::new();
+        for index in 0..mesh.len() {
+            let triangle = mesh.triangle(index);
+            for corner in [triangle.a, triangle.b, triangle.c] {
+                *sums.entry(key(corner)).or_insert(Vec3::ZERO) += triangle.normal();
+            }
+        }
+        let mean = |at: &Vec3| sums.get(&key(*at)).map_or(Vec3::ZERO, |sum| sum.normalize_or_zero());
+        mesh.vertices().iter().map(mean).collect()
     }
 
     fn normal(&self, surface: &Surface, triangle: u32) -> Option<Vec3> {
         let corners = self.mesh.indices().get(triangle)?;
         let [a, b, c] = corners.map(|vertex| self.normals.get(vertex as usize).copied().unwrap_or(Vec3::ZERO));
-        if a == Vec3::ZERO || b == Vec3::ZERO || c == Vec3::ZERO {
+        if [a, b, c].into_iter().any(|normal| normal.dot(surface.geometric_normal) < CREASE) {
             return None;
         }
         let (v, w) = (surface.uv.x, surface.uv.y);

@@ -110,39 +110,47 @@ pub struct Viewpoint {
 }
 
 impl Viewpoint {
-    /// The camera that was asked for, or one that sees all of `bounds` in a picture so many times as wide as high.
-    pub fn new(asked: Option<CameraArg>, bounds: &Aabb, up: Up, aspect: f32) -> Self {
-        let (eye, target, fov) = match asked {
-            Some(CameraArg { eye, target, fov }) => (eye, target, fov),
-            None => (framing(bounds, up, aspect), bounds.center(), FOV),
-        };
+    /// The camera that was asked for, or one that sees all `points` in a picture so many times as wide as high.
+    pub fn new(
+        asked: Option<CameraArg>,
+        bounds: &Aabb,
+        up: Up,
+        aspect: f32,
+        points: impl Iterator<Item = Vec3>,
+    ) -> Self {
+        let asked = asked.unwrap_or_else(|| framing(bounds, up, aspect, points));
         let mut above = up.direction();
         // Who looks straight up or down needs another direction for the picture's upper edge.
-        if (target - eye).normalize_or_zero().cross(above).length() < 1.0e-3 {
+        if (asked.target - asked.eye).normalize_or_zero().cross(above).length() < 1.0e-3 {
             above = Vec3::AXES[(up as usize + 1) % 3];
         }
-        let camera = Camera::pinhole(eye, target, above, fov.to_radians());
+        let camera = Camera::pinhole(asked.eye, asked.target, above, asked.fov.to_radians());
         Self { camera, right: camera.forward().cross(camera.up()), above: camera.up() }
     }
 }
 
-/// An eye from which the box fills the picture, but for a margin.
-fn framing(bounds: &Aabb, up: Up, aspect: f32) -> Vec3 {
-    const MARGIN: f32 = 1.08;
+/// The nearest camera in its direction that sees all `points`, but for a margin.
+fn framing(bounds: &Aabb, up: Up, aspect: f32, points: impl Iterator<Item = Vec3>) -> CameraArg {
+    const MARGIN: f32 = 1.12;
     let backward = up.towards_viewer(bounds).normalize();
     let right = up.direction().cross(backward).normalize();
     let above = backward.cross(right);
-    let half_height = (FOV * 0.5).to_radians().tan() / MARGIN;
     let center = bounds.center();
-    let corners = (0..8).map(|corner: usize| {
-        let pick = |axis: usize| if corner >> axis & 1 == 0 { bounds.min[axis] } else { bounds.max[axis] };
-        Vec3::new(pick(0), pick(1), pick(2)) - center
-    });
-    let distance = corners.map(|corner| {
-        let across = (corner.dot(right).abs() / aspect).max(corner.dot(above).abs());
-        corner.dot(backward) + across / half_height
-    });
-    center + backward * distance.fold(f32::MIN_POSITIVE, f32::max)
+    let tan = (FOV * 0.5).to_radians().tan() / MARGIN;
+    // Each side of the view is a plane that all points must be behind; two opposite ones meet where the eye must be.
+    let [mut x, mut y] = [(f32::INFINITY, f32::NEG_INFINITY); 2];
+    for point in points {
+        let off = point - center;
+        let depth = off.dot(backward);
+        for (side, range, slope) in [(right, &mut x, tan * aspect), (above, &mut y, tan)] {
+            let across = off.dot(side);
+            *range = (range.0.min(across - depth * slope), range.1.max(across + depth * slope));
+        }
+    }
+    let width = (x.1 - x.0) / (2.0 * tan * aspect);
+    let distance = width.max((y.1 - y.0) / (2.0 * tan)).max(f32::MIN_POSITIVE);
+    let target = center + right * ((x.0 + x.1) * 0.5) + above * ((y.0 + y.1) * 0.5);
+    CameraArg::new(target + backward * distance, target, FOV)
 }
 
 #[cfg(test)]
@@ -182,10 +190,11 @@ mod tests {
     fn the_whole_box_is_in_the_picture() {
         for (size, aspect) in [(Vec3::ONE, 1.5), (Vec3::new(1.0, 9.0, 1.0), 0.5), (Vec3::new(40.0, 20.0, 0.0), 2.0)] {
             let bounds = Aabb::new(Vec3::splat(3.0), Vec3::splat(3.0) + size);
-            let view = Viewpoint::new(None, &bounds, Up::guess(&bounds), aspect);
+            let corners = [bounds.min, bounds.max, Vec3::new(bounds.min.x, bounds.max.y, bounds.min.z)];
+            let view = Viewpoint::new(None, &bounds, Up::guess(&bounds), aspect, corners.into_iter());
             let (eye, forward) = (view.camera.eye(), view.camera.forward());
             let tan = (FOV * 0.5).to_radians().tan();
-            for corner in [bounds.min, bounds.max, Vec3::new(bounds.min.x, bounds.max.y, bounds.min.z)] {
+            for corner in corners {
                 let off = corner - eye;
                 let depth = off.dot(forward);
                 assert!(depth > 0.0 && off.dot(view.right).abs() <= depth * tan * aspect, "{size}");

@@ -1,8 +1,5 @@
 use hitscan::{
-    Hit, List, PreparedRay, Primitives, Ray, Scene, Span,
-    geometry::Aabb,
-    glam::Vec3,
-    primitives::Surface,
+    Hit, List, PreparedRay, Primitives, Ray, Scene, Span, geometry::Aabb, glam::Vec3, primitives::Surface,
     render::Caster,
 };
 

@@ -14,13 +14,13 @@ const CORNERS: u32 = 48;
 /// Half the rope's thickness.
 const ROPE: f32 = 0.34;
 
-/// A torus knot that stands on the board.
+/// A torus knot that stands on the board on two of its three lobes.
 pub(super) fn build(builder: &mut Builder) {
     let copper = Material {
-        diffuse: Vec3::new(0.50, 0.13, 0.045),
-        specular: Vec3::new(1.0, 0.62, 0.38),
-        shininess: 70.0,
-        reflectivity: 0.22,
+        diffuse: Vec3::new(0.52, 0.15, 0.05),
+        specular: Vec3::new(1.0, 0.66, 0.42),
+        shininess: 60.0,
+        reflectivity: 0.2,
     };
     let mut points = Vec::new();
     for ring in 0..RINGS {
@@ -28,7 +28,7 @@ pub(super) fn build(builder: &mut Builder) {
         let (center, ahead) = (middle(at), middle(at + 1.0e-3));
         let along = (ahead - center).normalize_or_zero();
         // The frame leans on the direction away from the axis, which turns with the knot and so closes with it.
-        let across = along.cross(away(center)).normalize_or_zero();
+        let across = along.cross(center.with_z(0.0)).normalize_or_zero();
         let out = across.cross(along);
         for corner in 0..CORNERS {
             let (sin, cos) = (corner as f32 / CORNERS as f32 * TAU).sin_cos();
@@ -36,26 +36,39 @@ pub(super) fn build(builder: &mut Builder) {
             points.push((center + normal * ROPE, normal));
         }
     }
+    let lowest = points.iter().map(|(point, _)| point.y).fold(f32::INFINITY, f32::min);
+    points.iter_mut().for_each(|(point, _)| point.y -= lowest);
     let number = |ring: u32, corner: u32| (ring % RINGS) * CORNERS + corner % CORNERS;
     let mut triangles = Vec::new();
     for (ring, corner) in (0..RINGS).flat_map(|ring| (0..CORNERS).map(move |corner| (ring, corner))) {
         let [a, b] = [number(ring, corner), number(ring, corner + 1)];
         let [c, d] = [number(ring + 1, corner), number(ring + 1, corner + 1)];
-        triangles.extend([[a, c, b], [b, c, d]]);
+        triangles.extend([[a, b, c], [b, d, c]]);
     }
     builder.push(&points, &triangles, copper);
 }
 
-/// The middle of the rope, `at` from 0 to 1.
+/// The middle of the rope, `at` from 0 to 1, around the z axis.
 fn middle(at: f32) -> Vec3 {
     let (around, through) = (TURNS.0 * at * TAU, TURNS.1 * at * TAU);
     let radius = 1.0 + 0.45 * through.cos();
-
-    // Upright, its lowest point one rope above the board.
-    Vec3::new(radius * around.cos(), radius * around.sin() + 1.45 + ROPE, 0.55 * through.sin())
+    // A quarter turn puts one lobe on top.
+    let (sin, cos) = (around + TAU / 4.0).sin_cos();
+    Vec3::new(radius * cos, radius * sin, 0.55 * through.sin())
 }
 
-/// Away from the knot's axis.
-fn away(point: Vec3) -> Vec3 {
-    Vec3::new(point.x, point.y - 1.45 - ROPE, 0.0).normalize_or_zero()
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn normals_point_out_of_the_fronts() {
+        let mut builder = Builder::default();
+        build(&mut builder);
+        for corners in &builder.triangles {
+            let [a, b, c] = corners.map(|corner| builder.vertices[corner as usize]);
+            let normal = builder.normals[corners[0] as usize];
+            assert!((b - a).cross(c - a).dot(normal) > 0.0);
+        }
+    }
 }
