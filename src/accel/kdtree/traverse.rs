@@ -8,98 +8,102 @@ use crate::{
     math::{greatest, least},
 };
 
-/// The walk through a [`KdTree`]: front to back, a stack of far children.
-///
-/// A stack entry is a node with the entry and exit of its cell. (The entry cannot be had from the exit of the cell just
-/// left: a ray in a plane is in both cells all the time.)
+/// The walk through a [`KdTree`]: front to back, a stack of cells that wait.
 #[derive(Clone, Debug)]
 pub struct KdTraversal<'a> {
     nodes: &'a [Node],
     references: References<'a>,
-    /// The node to visit next, if the ray is in one.
-    node: Option<u32>,
-    enter: f32,
-    exit: f32,
     slack: f32,
-    stack: heapless::Vec<Entry, MAX_DEPTH>,
+    /// The cell to go on with: the whole at first, after a pause the one before which it was; none behind a leaf.
+    next: Option<Cell>,
+    /// Far children, the nearest on top.
+    stack: heapless::Vec<Cell, MAX_DEPTH>,
 }
 
-/// A far child that waits.
+/// A node with the entry and exit of its cell.
+///
+/// (The entry cannot be had from the exit of the cell just left: a ray in a plane is in both cells all the time.)
 #[derive(Clone, Copy, Debug)]
-struct Entry {
+struct Cell {
     node: u32,
     enter: f32,
     exit: f32,
 }
 
 impl<'a> KdTraversal<'a> {
+    #[inline]
     pub(super) fn new(tree: &KdTree<'a>, ray: &PreparedRay) -> Self {
+        // Not filled here, so that it is made where it stays: moving the stack would cost more than a hundred nodes.
         let mut traversal = Self {
             nodes: tree.nodes,
             references: tree.references,
-            node: None,
-            enter: 0.0,
-            exit: 0.0,
             slack: 0.0,
+            next: None,
             stack: heapless::Vec::new(),
         };
         if let Some((enter, exit)) = tree.bounds.interval(ray) {
-            traversal.enter = greatest(enter, ray.ray().t_min);
-            traversal.exit = least(exit, beyond(ray.ray().t_max));
-            traversal.slack = slack(traversal.enter);
-            traversal.node = if traversal.enter > traversal.exit { None } else { Some(0) };
+            let enter = greatest(enter, ray.ray().t_min);
+            let exit = least(exit, beyond(ray.ray().t_max));
+            traversal.slack = slack(enter);
+            traversal.next = if enter > exit { None } else { Some(Cell { node: 0, enter, exit }) };
         }
         traversal
     }
 
+    /// The nearest cell that begins before `end`.
+    #[inline(always)]
+    fn pop(&mut self, end: f32) -> Option<Cell> {
+        loop {
+            let cell = self.stack.pop()?;
+            if !(cell.enter > end) {
+                return Some(cell);
+            }
+        }
+    }
+
     #[inline(always)]
     fn advance<const BOUNDED: bool>(&mut self, ray: &PreparedRay, t_max: f32, budget: &mut u32) -> Step<Leaf<'a>> {
+        let end = beyond(t_max);
+        // The cell at hand is in registers, not in `self`: that is a third of the instructions.
+        let Some(mut cell) = self.next.take().or_else(|| self.pop(end)) else { return Step::Done };
         loop {
-            let Some(index) = self.node else {
-                let Some(entry) = self.stack.pop() else { return Step::Done };
-                if !(entry.enter > beyond(t_max)) {
-                    self.node = Some(entry.node);
-                    self.enter = entry.enter;
-                    self.exit = entry.exit;
-                }
-                continue;
-            };
             if BOUNDED {
                 if *budget == 0 {
+                    self.next = Some(cell);
                     return Step::Paused;
                 }
                 *budget -= 1;
             }
-            let Some(node) = self.nodes.get(index as usize) else { return Step::Done };
+            let Some(node) = self.nodes.get(cell.node as usize) else { return Step::Done };
             match node.kind() {
                 Kind::Inner { axis, position, right } => {
                     // The child on the ray's side first.
                     let view = &ray.views[axis as usize];
-                    let (near, far) = if view.ascends() { (index + 1, right) } else { (right, index + 1) };
+                    let left = cell.node + 1;
+                    let (near, far) = if view.ascends() { (left, right) } else { (right, left) };
                     let distance = position - view.origin;
                     let entry = distance * view.entry;
                     let exit = distance * view.exit + self.slack;
                     // Written so that NaN, the ray in the plane, visits both.
-                    if entry > self.exit {
-                        self.node = Some(near);
-                    } else if exit < self.enter {
-                        self.node = Some(far);
+                    if entry > cell.exit {
+                        cell.node = near;
+                    } else if exit < cell.enter {
+                        cell.node = far;
                     } else {
                         // Cannot fail: the tree is no deeper than the stack.
-                        let enter = greatest(entry, self.enter);
-                        let _ = self.stack.push(Entry { node: far, enter, exit: self.exit });
-                        self.node = Some(near);
-                        self.exit = least(exit, self.exit);
+                        let enter = greatest(entry, cell.enter);
+                        let _ = self.stack.push(Cell { node: far, enter, exit: cell.exit });
+                        cell = Cell { node: near, enter: cell.enter, exit: least(exit, cell.exit) };
                     }
                 }
-                Kind::Leaf { first, count } => {
-                    self.node = None;
-                    match count {
-                        0 => {}
-                        1 => return Step::Leaf(Leaf::consecutive(first, 1)),
-                        _ => return Step::Leaf(Leaf::of(self.references, first, count)),
-                    }
-                }
+                Kind::Leaf { first, count } => match count {
+                    0 => match self.pop(end) {
+                        Some(next) => cell = next,
+                        None => return Step::Done,
+                    },
+                    1 => return Step::Leaf(Leaf::consecutive(first, 1)),
+                    _ => return Step::Leaf(Leaf::of(self.references, first, count)),
+                },
             }
         }
     }
