@@ -97,8 +97,7 @@ fn imports(code: &str, depth: usize) -> Vec<String> {
     }
     for (at, _) in code.match_indices("super::") {
         if !code[..at].ends_with("super::") && !code[..at].ends_with(is_name) {
-            let up = code[at..].split("super::").take_while(|part| part.is_empty()).count() - 1;
-            let up = up.max(1);
+            let up = code[at..].split("super::").take_while(|part| part.is_empty()).count();
             if up >= depth + inline_modules(code, at) {
                 found.extend(heads(&code[at + up * "super::".len()..]));
             }

@@ -1,4 +1,4 @@
-//! Bakes meshes and their trees for the programs, with what the host finds in them, and places the board's memory.
+//! Bakes assets for the programs, with what the host finds in them, and places the board's memory.
 
 #[path = "src/answer.rs"]
 mod answer;
@@ -7,16 +7,21 @@ mod camera;
 #[path = "bake/knot.rs"]
 mod knot;
 
-use std::{env, error::Error, fmt::Write as _, fs, path::PathBuf};
+use std::{env, error::Error, fmt::Write as _, fs, path::Path};
 
 use answer::Answer;
-use hitscan::{Arena, KdTree, Mesh, Scene, glam::Vec3, kdtree::Options};
+use hitscan::{
+    KdTree, Mesh, Scene,
+    bake::{self, Baker},
+    kdtree::Options,
+};
 
 fn main() -> Result<(), Box<dyn Error>> {
     for input in ["build.rs", "bake", "memory", "src/answer.rs", "src/camera.rs"] {
         println!("cargo:rerun-if-changed={input}");
     }
-    let out = PathBuf::from(env::var("OUT_DIR")?);
+    let out = env::var("OUT_DIR")?;
+    let out = Path::new(&out);
     let target = env::var("TARGET")?;
     let board = match target.split('-').next() {
         Some("thumbv6m") => "microbit",
@@ -29,29 +34,28 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     // The micro:bit has 16 kB of RAM: what is built there is smaller.
     let (along, around) = if board == "microbit" { (15, 4) } else { (100, 5) };
-    let mut code = bake("KNOT", "A torus knot of 1,000 triangles.", 100, 5)?;
-    code += &bake("REBUILT", "The knot that fits into RAM together with its tree.", along, around)?;
     let triangles = usize::from(along) * usize::from(around) * 2;
+    let mut code = asset(out, "KNOT", "A torus knot of 1,000 triangles.", 100, 5)?;
+    code += &asset(out, "REBUILT", "The knot that is also built on the device.", along, around)?;
     writeln!(code, "/// Triangles of [`REBUILT`].\npub const REBUILT_TRIANGLES: usize = {triangles};")?;
     Ok(fs::write(out.join("baked.rs"), code)?)
 }
 
-/// A `static` with a knot, its tree and the answer to the camera's rays.
-fn bake(name: &str, doc: &str, along: u16, around: u16) -> Result<String, Box<dyn Error>> {
+/// Writes a knot and its tree to a file; the `static` that includes it beside the answer to the camera's rays.
+fn asset(out: &Path, name: &str, doc: &str, along: u16, around: u16) -> Result<String, Box<dyn Error>> {
     let (vertices, triangles) = knot::mesh(along, around);
     let mesh = Mesh::new(&vertices, triangles.as_slice())?;
-    let options = Options::balanced();
-    let mut memory = vec![0; KdTree::words(triangles.len(), &options)];
-    let tree = KdTree::build(&mesh, &mut Arena::new(&mut memory), &options)?;
+    let tree = bake::kd_tree(&mesh, &Options::balanced())?;
+    let tree = KdTree::open(&tree)?;
+    let words = Baker::new().mesh(&mesh).kd_tree(&tree).finish();
+    let file = out.join(name).with_extension("hits");
+    fs::write(&file, words.into_iter().flat_map(u32::to_le_bytes).collect::<Vec<_>>())?;
+
     let scene = Scene::new(tree, &mesh)?;
     let mut answer = Answer::NONE;
     for ray in (0..camera::HEIGHT).flat_map(camera::row) {
         answer.add(scene.closest_hit(&ray));
     }
-    let vertices: Vec<u32> = vertices.iter().flat_map(Vec3::to_array).map(f32::to_bits).collect();
-    let words = tree.as_words();
-    Ok(format!(
-        "/// {doc}\npub static {name}: Baked = Baked {{ vertices: &{vertices:?}, triangles: &{triangles:?}, \
-         tree: &{words:?}, answer: {answer:?} }};\n"
-    ))
+    let baked = format!("Baked {{ bytes: hitscan::include_asset!({file:?}), answer: {answer:?} }}");
+    Ok(format!("/// {doc}\npub static {name}: Baked = {baked};\n"))
 }

@@ -132,7 +132,8 @@ impl AxisView {
 #[derive(Clone, Copy, Debug)]
 pub struct PreparedRay {
     ray: Ray,
-    pub(crate) views: [AxisView; 3],
+    /// By axis; the fourth is there so that an index of two bits needs no check.
+    pub(crate) views: [AxisView; 4],
     pub(crate) shear: Shear,
 }
 
@@ -167,8 +168,8 @@ impl PreparedRay {
         // Finite limits spare every primitive the question whether its `t` overflowed.
         let ray = Ray { t_min: ray.t_min.max(f32::MIN), t_max: ray.t_max.min(f32::MAX), ..*ray };
         let forward = ray.t_min >= 0.0;
-        let views =
-            [AxisView::new(o.x, d.x, forward), AxisView::new(o.y, d.y, forward), AxisView::new(o.z, d.z, forward)];
+        let [x, y, z] = Axis::ALL.map(|axis| AxisView::new(axis.of(o), axis.of(d), forward));
+        let views = [x, y, z, z];
         let inverse = views[major as usize].entry;
         let axes = [major.next(), major.next().next(), major];
         let [first, second, _] = axes;

@@ -25,7 +25,7 @@ impl Random {
 
     /// A whole number below `n`.
     pub fn below(&mut self, n: usize) -> usize {
-        (u64::from(self.next()) * n as u64 >> 32) as usize
+        ((u64::from(self.next()) * n as u64) >> 32) as usize
     }
 
     /// Whether a chance of one in `n` comes true.

@@ -7,8 +7,8 @@ mod walk;
 
 use common::{FAMILIES, Random, adversarial_mesh, adversarial_ray, bits, boxed, noise};
 use hitscan::{
-    Arena, KdTree, List, Mesh, Primitives, Ray, Scene, from_fn,
-    geometry::Aabb,
+    Arena, Hit, KdTree, List, Mesh, PreparedRay, Primitives, Ray, Scene, Span, from_fn,
+    geometry::{Aabb, Triangle},
     glam::Vec3,
     kdtree::{Options, Split},
 };
@@ -104,4 +104,64 @@ fn every_mutant_is_caught() {
         }
     }
     assert!(survivors.is_empty(), "{survivors:?}");
+}
+
+/// Triangles by the plain test of Möller and Trumbore (1997), whose `t` may be far off.
+struct Careless<'a> {
+    mesh: Mesh<'a>,
+    certified: bool,
+}
+
+impl Primitives for Careless<'_> {
+    fn len(&self) -> u32 {
+        self.mesh.len()
+    }
+
+    fn bounds(&self, index: u32) -> Aabb {
+        self.mesh.bounds(index)
+    }
+
+    fn intersect(&self, index: u32, ray: &PreparedRay, span: &Span) -> Option<Hit> {
+        let (Triangle { a, b, c }, ray) = (self.mesh.triangle(index), ray.ray());
+        let (u, v, s) = (b - a, c - a, ray.origin - a);
+        let (p, q) = (ray.direction.cross(v), s.cross(u));
+        let inverse = 1.0 / u.dot(p);
+        let (x, y) = (s.dot(p) * inverse, ray.direction.dot(q) * inverse);
+        if x >= 0.0 && y >= 0.0 && x + y <= 1.0 { span.accept(v.dot(q) * inverse, index) } else { None }
+    }
+
+    fn is_certified(&self, _index: u32) -> bool {
+        self.certified
+    }
+
+    fn clip(&self, index: u32, cell: &Aabb) -> Option<Aabb> {
+        self.mesh.clip(index, cell)
+    }
+}
+
+/// The first of many rays for which the tree of careless triangles answers other than their list.
+fn careless(certified: bool) -> Option<usize> {
+    let mut random = Random::new(10);
+    let mut memory = vec![0; 1 << 15];
+    let mut scene = |random: &mut Random| {
+        let family = random.below(FAMILIES);
+        let (vertices, triangles) = adversarial_mesh(random, family, 16);
+        let shapes = Careless { mesh: Mesh::new(&vertices, &triangles[..]).unwrap(), certified };
+        let tree = KdTree::build(&shapes, &mut Arena::new(&mut memory), &options(random)).unwrap();
+        let list = Scene::new(List::new(&shapes).unwrap(), &shapes).unwrap();
+        let tree = Scene::new(tree, &shapes).unwrap();
+        (0..100).any(|_| {
+            let ray = adversarial_ray(random, family, &vertices);
+            bits(list.closest_hit(&ray)) != bits(tree.closest_hit(&ray))
+        })
+    };
+    (1..=3000).find(|_| scene(&mut random)).map(|scenes| scenes * 100)
+}
+
+#[test]
+fn shapes_that_are_not_certified_must_not_claim_to_be() {
+    assert_eq!(careless(false), None);
+    let caught = careless(true);
+    println!("careless triangles are caught by ray {caught:?}");
+    assert!(caught.is_some());
 }

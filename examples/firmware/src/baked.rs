@@ -1,33 +1,34 @@
-//! Scenes in flash, made by `build.rs`: opened, not copied.
+//! Assets in flash, made by `build.rs`: checked once, then used where they lie.
 
-use hitscan::{KdTree, Mesh};
+use hitscan::{
+    KdTree, Mesh, Scene,
+    asset::{Asset, Stored},
+};
 
 use crate::Answer;
 
-/// A mesh, its tree, and what the host found in them.
+/// An asset, and what the host found in it.
 #[derive(Clone, Copy, Debug)]
 pub struct Baked {
-    vertices: &'static [u32],
-    triangles: &'static [[u16; 3]],
-    tree: &'static [u32],
+    /// The asset: a mesh and its kD-tree.
+    pub bytes: &'static [u8],
     /// The host's answer to the camera's rays.
     pub answer: Answer,
 }
 
 impl Baked {
-    /// The triangles, once all are checked.
-    pub fn mesh(&self) -> Mesh<'static> {
-        Mesh::new(bytemuck::cast_slice(self.vertices), self.triangles).expect("build.rs made a valid mesh")
+    fn asset(&self) -> Asset<'static> {
+        Asset::open(self.bytes).expect("build.rs bakes valid assets")
     }
 
-    /// The tree, once all its words are checked.
-    pub fn tree(&self) -> KdTree<'static> {
-        KdTree::open(self.tree).expect("build.rs made a valid tree")
+    /// A part of the asset.
+    pub fn read<T: Stored<'static>>(&self) -> T {
+        self.asset().read().expect("build.rs bakes meshes and trees")
     }
 
-    /// Bytes of flash: vertices, corners, tree.
-    pub const fn bytes(&self) -> [usize; 3] {
-        [size_of_val(self.vertices), size_of_val(self.triangles), size_of_val(self.tree)]
+    /// The tree with its mesh.
+    pub fn scene(&self) -> Scene<KdTree<'static>, Mesh<'static>> {
+        self.asset().scene().expect("build.rs bakes meshes with their trees")
     }
 }
 

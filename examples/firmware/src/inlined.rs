@@ -85,7 +85,7 @@ impl<'a> InlinedTree<'a> {
                 let (near, far) = if view.entry.is_sign_negative() { (right, left) } else { (left, right) };
                 let distance = f32::from_bits(payload) - view.origin;
                 let plane_entry = distance * view.entry;
-                let plane_exit = distance * view.exit + f32::MIN_POSITIVE;
+                let plane_exit = distance * view.exit + 2.0 * f32::MIN_POSITIVE;
                 if plane_entry > exit {
                     index = near;
                 } else if plane_exit < enter {

@@ -27,6 +27,9 @@ pub(crate) enum Kind {
 pub(crate) const MAX_LINK: u32 = (1 << 30) - 1;
 
 impl Node {
+    /// What [`axis_or_leaf`](Self::axis_or_leaf) is of a leaf.
+    pub(crate) const LEAF: u32 = 3;
+
     /// Words per node.
     pub(crate) const WORDS: usize = 2;
 
@@ -42,19 +45,42 @@ impl Node {
 
     /// A leaf.
     pub(crate) const fn leaf(first: u32, count: u32) -> Self {
-        Self { payload: first, link: count << 2 | 3 }
+        Self { payload: first, link: count << 2 | Self::LEAF }
     }
 
+    /// The number of an inner node's axis, or 3 of a leaf.
     #[inline(always)]
+    pub(crate) const fn axis_or_leaf(self) -> u32 {
+        self.link & 3
+    }
+
+    /// The number of an inner node's right child, or of a leaf's primitives.
+    #[inline(always)]
+    pub(crate) const fn number(self) -> u32 {
+        self.link >> 2
+    }
+
+    /// The position of an inner node's plane.
+    #[inline(always)]
+    pub(crate) const fn position(self) -> f32 {
+        f32::from_bits(self.payload)
+    }
+
+    /// A leaf's first reference, or its only primitive.
+    #[inline(always)]
+    pub(crate) const fn first(self) -> u32 {
+        self.payload
+    }
+
+    /// All of it at once, for who is not in a hurry.
     pub(crate) const fn kind(self) -> Kind {
-        let number = self.link >> 2;
-        let axis = match self.link & 3 {
+        let axis = match self.axis_or_leaf() {
             0 => Axis::X,
             1 => Axis::Y,
             2 => Axis::Z,
-            _ => return Kind::Leaf { first: self.payload, count: number },
+            _ => return Kind::Leaf { first: self.first(), count: self.number() },
         };
-        Kind::Inner { axis, position: f32::from_bits(self.payload), right: number }
+        Kind::Inner { axis, position: self.position(), right: self.number() }
     }
 
     /// The two words.

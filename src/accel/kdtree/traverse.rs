@@ -1,7 +1,4 @@
-use super::{
-    KdTree, MAX_DEPTH,
-    node::{Kind, Node},
-};
+use super::{KdTree, MAX_DEPTH, node::Node};
 use crate::{
     accel::{Leaf, Step, Traversal, leaf::References},
     geometry::{PreparedRay, beyond, slack},
@@ -75,35 +72,35 @@ impl<'a> KdTraversal<'a> {
                 *budget -= 1;
             }
             let Some(node) = self.nodes.get(cell.node as usize) else { return Step::Done };
-            match node.kind() {
-                Kind::Inner { axis, position, right } => {
-                    // The child on the ray's side first.
-                    let view = &ray.views[axis as usize];
-                    let left = cell.node + 1;
-                    let (near, far) = if view.ascends() { (left, right) } else { (right, left) };
-                    let distance = position - view.origin;
-                    let entry = distance * view.entry;
-                    let exit = distance * view.exit + self.slack;
-                    // Written so that NaN, the ray in the plane, visits both.
-                    if entry > cell.exit {
-                        cell.node = near;
-                    } else if exit < cell.enter {
-                        cell.node = far;
-                    } else {
-                        // Cannot fail: the tree is no deeper than the stack.
-                        let enter = greatest(entry, cell.enter);
-                        let _ = self.stack.push(Cell { node: far, enter, exit: cell.exit });
-                        cell = Cell { node: near, enter: cell.enter, exit: least(exit, cell.exit) };
-                    }
-                }
-                Kind::Leaf { first, count } => match count {
+            let axis = node.axis_or_leaf();
+            if axis == Node::LEAF {
+                match node.number() {
                     0 => match self.pop(end) {
                         Some(next) => cell = next,
                         None => return Step::Done,
                     },
-                    1 => return Step::Leaf(Leaf::consecutive(first, 1)),
-                    _ => return Step::Leaf(Leaf::of(self.references, first, count)),
-                },
+                    1 => return Step::Leaf(Leaf::consecutive(node.first(), 1)),
+                    count => return Step::Leaf(Leaf::of(self.references, node.first(), count)),
+                }
+                continue;
+            }
+            // The child on the ray's side first.
+            let view = &ray.views[axis as usize];
+            let (left, right) = (cell.node + 1, node.number());
+            let (near, far) = if view.ascends() { (left, right) } else { (right, left) };
+            let distance = node.position() - view.origin;
+            let entry = distance * view.entry;
+            let exit = distance * view.exit + self.slack;
+            // Written so that NaN, the ray in the plane, visits both.
+            if entry > cell.exit {
+                cell.node = near;
+            } else if exit < cell.enter {
+                cell.node = far;
+            } else {
+                // Cannot fail: the tree is no deeper than the stack.
+                let enter = greatest(entry, cell.enter);
+                let _ = self.stack.push(Cell { node: far, enter, exit: cell.exit });
+                cell = Cell { node: near, enter: cell.enter, exit: least(exit, cell.exit) };
             }
         }
     }

@@ -17,10 +17,10 @@ const ROPE: f32 = 0.34;
 /// A torus knot that stands on the board on two of its three lobes.
 pub(super) fn build(builder: &mut Builder) {
     let copper = Material {
-        diffuse: Vec3::new(0.52, 0.15, 0.05),
+        diffuse: Vec3::new(0.60, 0.16, 0.04),
         specular: Vec3::new(1.0, 0.66, 0.42),
         shininess: 60.0,
-        reflectivity: 0.2,
+        reflectivity: 0.18,
     };
     let mut points = Vec::new();
     for ring in 0..RINGS {

@@ -47,17 +47,17 @@ impl Builder {
 
 impl BuiltIn {
     /// From where it looks best.
-    pub const CAMERA: CameraArg = CameraArg::new(Vec3::new(0.9, 3.4, 8.2), Vec3::new(0.0, 1.25, 0.0), 36.0);
+    pub const CAMERA: CameraArg = CameraArg::new(Vec3::new(1.2, 4.3, 8.7), Vec3::new(0.05, 1.0, 0.0), 34.0);
 
     /// A warm lamp, a weak cold one, and a soft sky.
     pub fn lighting() -> Lighting {
         Lighting {
             lights: vec![
-                Light::point(Vec3::new(-5.5, 8.5, 6.0), Vec3::new(0.95, 0.86, 0.72)),
+                Light::point(Vec3::new(-5.5, 8.5, 6.0), Vec3::new(1.02, 0.90, 0.74)),
                 Light::point(Vec3::new(7.0, 5.0, 2.5), Vec3::new(0.20, 0.26, 0.36)),
             ],
             ambient: Vec3::new(0.15, 0.17, 0.21),
-            background: [Vec3::new(0.90, 0.84, 0.78), Vec3::new(0.07, 0.16, 0.34)],
+            background: [Vec3::new(0.44, 0.48, 0.57), Vec3::new(0.004, 0.02, 0.09)],
         }
     }
 

@@ -7,7 +7,7 @@ use firmware::{
     Answer, Counter, baked, camera, entry, finish,
     inlined::{InlinedTree, views},
 };
-use hitscan::{Ray, Scene, glam::Vec3};
+use hitscan::{Ray, glam::Vec3};
 use semihosting::println;
 
 /// The cursor may cost 5 % more than the inlined walk.
@@ -17,9 +17,8 @@ const LIMIT: f32 = 1.05;
 fn main() -> ! {
     let counter = Counter::new();
     let baked = core::hint::black_box(&baked::KNOT);
-    let (mesh, tree) = (baked.mesh(), baked.tree());
-    let inlined = InlinedTree::new(&tree);
-    let scene = Scene::new(tree, mesh).expect("a tree and its mesh");
+    let scene = baked.scene();
+    let inlined = InlinedTree::new(scene.accelerator());
 
     let (mut by_cursor, mut by_closure) = (Answer::NONE, Answer::NONE);
     let (mut cursor, mut closure, mut prepare) = (0, 0, 0);
@@ -31,7 +30,7 @@ fn main() -> ! {
             let (mut hit, views) = (None, views(ray));
             cursor += counter.instructions(|| hit = scene.closest_hit(ray));
             by_cursor.add(hit);
-            closure += counter.instructions(|| hit = inlined.closest_hit(&mesh, ray, &views));
+            closure += counter.instructions(|| hit = inlined.closest_hit(scene.primitives(), ray, &views));
             by_closure.add(hit);
             prepare += counter.instructions(|| _ = core::hint::black_box(ray.prepare()));
             // As in any program with shadows, the cursor has two callers, and is not inlined into its only one.

@@ -1,10 +1,10 @@
-//! Casts the camera's rays at a mesh and a tree that stay in flash: a picture, and the host's answer to the last bit.
+//! Casts the camera's rays at an asset that stays in flash: a picture, and the host's answer to the last bit.
 
 #![no_std]
 #![no_main]
 
 use firmware::{Answer, baked, camera, entry, finish};
-use hitscan::{Hit, Scene};
+use hitscan::{Hit, Primitives};
 use semihosting::println;
 
 /// From near to far.
@@ -20,7 +20,7 @@ fn shade(hit: Option<Hit>) -> u8 {
 #[entry]
 fn main() -> ! {
     let baked = &baked::KNOT;
-    let scene = Scene::new(baked.tree(), baked.mesh()).expect("a tree and its mesh");
+    let scene = baked.scene();
     let mut answer = Answer::NONE;
     for y in 0..camera::HEIGHT {
         let mut line = [b' '; camera::WIDTH as usize];
@@ -34,8 +34,7 @@ fn main() -> ! {
             println!("{}", str::from_utf8(&line).unwrap_or_default().trim_end());
         }
     }
-    let [vertices, triangles, tree] = baked.bytes();
-    println!("in flash: {vertices} bytes of vertices, {triangles} of corners, {tree} of tree");
+    println!("{} triangles and their tree in {} bytes of flash", scene.primitives().len(), baked.bytes.len());
     println!("here:  {answer}");
     println!("there: {}", baked.answer);
     finish(answer == baked.answer)

@@ -8,7 +8,7 @@ use firmware::{
     baked::{REBUILT, REBUILT_TRIANGLES},
     entry, finish,
 };
-use hitscan::{Arena, KdTree, kdtree::Options};
+use hitscan::{Arena, KdTree, Mesh, kdtree::Options};
 use semihosting::println;
 use static_cell::ConstStaticCell;
 
@@ -21,8 +21,8 @@ static MEMORY: ConstStaticCell<[u32; WORDS]> = ConstStaticCell::new([0; WORDS]);
 
 #[entry]
 fn main() -> ! {
-    let mesh = REBUILT.mesh();
-    let expected = REBUILT.tree().as_words();
+    let mesh: Mesh = REBUILT.read();
+    let expected = REBUILT.read::<KdTree>().as_words();
     let mut arena = Arena::new(MEMORY.take());
     println!("{REBUILT_TRIANGLES} triangles, an arena of {WORDS} words");
 

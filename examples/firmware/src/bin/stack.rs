@@ -7,7 +7,7 @@ use firmware::{
     baked::{KNOT, REBUILT, REBUILT_TRIANGLES},
     camera, entry, finish, stack_of,
 };
-use hitscan::{Arena, KdTree, Ray, Scene, kdtree::Options};
+use hitscan::{Arena, KdTree, Mesh, Ray, kdtree::Options};
 use semihosting::println;
 use static_cell::ConstStaticCell;
 
@@ -26,17 +26,17 @@ fn most(mut query: impl FnMut(&Ray)) -> usize {
 
 #[entry]
 fn main() -> ! {
-    let scene = Scene::new(KNOT.tree(), KNOT.mesh()).expect("a tree and its mesh");
+    let scene = KNOT.scene();
     let (mut hits, mut shadows) = (0, 0);
     let closest = most(|ray| hits += u32::from(scene.closest_hit(ray).is_some()));
     let any = most(|ray| shadows += u32::from(scene.any_hit(ray)));
     // Aimed at a corner: the slow tiers of the triangle test decide.
-    let corners = KNOT.mesh().vertices();
+    let corners = scene.primitives().vertices();
     let from = corners[0] * 3.0;
     let exact = corners.iter().step_by(7).map(|&corner| Ray::between(from, corner).up_to(2.0));
     let exact = exact.map(|ray| stack_of(&mut || hits += u32::from(scene.closest_hit(&ray).is_some())));
     let exact = exact.max().unwrap_or(0);
-    let mesh = REBUILT.mesh();
+    let mesh: Mesh = REBUILT.read();
     let mut arena = Arena::new(MEMORY.take());
     let mut built = None;
     let build = stack_of(&mut || built = KdTree::build(&mesh, &mut arena, &Options::balanced()).ok());

@@ -1,0 +1,83 @@
+//! Builders, arenas and assets.
+
+use core::hint::black_box;
+
+use hitscan::{
+    Accelerator, Arena, KdTree, List, Mesh, Primitives,
+    asset::{Asset, Stored},
+    from_fn,
+    kdtree::{Options, Split},
+    primitives::Spheres,
+    render::Materials,
+};
+
+use crate::input::{aabb, float, ray, some, sphere, vector, word};
+
+/// Builds over every kind of primitives.
+pub fn all() {
+    let corners = || [word() as u16, word() as u16, word() as u16];
+    let wide = || [word(), word(), word()];
+    with(&Mesh::new(some(vector, &mut None), some(corners, &mut None)));
+    with(&Mesh::new(some(vector, &mut None), some(wide, &mut None)));
+    with(&Spheres::new(some(sphere, &mut None)));
+    with::<_, ()>(&Ok(from_fn(word(), |_| aabb(), |_, _| Some(float()))));
+    assets();
+}
+
+fn with<P: Primitives, E>(primitives: &Result<P, E>) {
+    let Ok(primitives) = primitives else { return };
+    black_box(List::new(primitives).map(|list| list.bounds()).is_ok());
+    let mut memory = [0; 1024];
+    let mut arena = Arena::new(black_box(memory.as_mut_slice()));
+    let options = options();
+    black_box(KdTree::words(word() as usize, &options));
+    arena.frame(|arena| tree(KdTree::build(primitives, arena, &options)));
+    tree(KdTree::build(&(primitives, primitives), &mut arena, &options));
+    tree(KdTree::build(primitives as &dyn Primitives, &mut arena, &options));
+    black_box(arena.available());
+}
+
+fn options() -> Options {
+    let presets = [Options::small(), Options::balanced(), Options::fast().fit(word() as usize)];
+    let preset = presets.get(word() as usize).copied().unwrap_or_default();
+    let split = match word() {
+        0 => Split::Midpoint,
+        1 => Split::Median,
+        _ => Split::Sah,
+    };
+    Options {
+        split,
+        leaf_size: word(),
+        max_depth: black_box(Some(word())),
+        intersection_cost: float(),
+        empty_bonus: float(),
+        clip: word() == 0,
+        bytes_per_primitive: word(),
+        ..preset
+    }
+}
+
+fn tree<E>(tree: Result<KdTree<'_>, E>) {
+    let Ok(tree) = tree else { return };
+    black_box((tree.node_count(), tree.reference_count(), tree.depth(), tree.expected_work()));
+    black_box(KdTree::open(tree.as_words()).is_ok());
+    black_box(ray().prepare().map(|ray| tree.traverse(&ray)));
+}
+
+fn assets() {
+    let (mut bytes, mut words) = (None, None);
+    let bytes = some(|| word() as u8, &mut bytes);
+    let words = some(word, &mut words);
+    for asset in [Asset::open(bytes), Asset::from_words(words)].into_iter().flatten() {
+        asset.sections().for_each(|section| _ = black_box(section));
+        read::<KdTree<'_>>(&asset);
+        read::<Mesh<'_>>(&asset);
+        read::<Spheres<'_>>(&asset);
+        read::<Materials<'_>>(&asset);
+        black_box(asset.scene::<KdTree<'_>, Mesh<'_>>().is_ok());
+    }
+}
+
+fn read<'a, T: Stored<'a>>(asset: &Asset<'a>) {
+    black_box(asset.read::<T>().is_ok());
+}

@@ -1,0 +1,45 @@
+//! Shapes, rays and transforms.
+
+use core::hint::black_box;
+
+use hitscan::geometry::{Axis, Transform, Triangle};
+
+use crate::input::{aabb, float, matrix, ray, some, sphere, vector};
+
+/// Calls everything in `hitscan::geometry`.
+pub fn all() {
+    boxes();
+    triangles();
+    spheres();
+    transforms();
+}
+
+fn boxes() {
+    let (a, b) = (aabb(), aabb());
+    black_box((a.union(&b), a.intersection(&b), a.is_empty(), a.is_valid(), a.contains(vector())));
+    let axis = Axis::of_largest(vector());
+    black_box((a.size(), a.center(), a.half_area(), a.split(axis, float()), axis.next().of(vector())));
+    black_box(hitscan::geometry::Aabb::around(some(vector, &mut None).iter().copied()));
+    black_box(ray().prepare().map(|ray| a.interval(&ray)));
+}
+
+fn triangles() {
+    let triangle = Triangle::new(vector(), vector(), vector());
+    black_box((triangle.normal(), triangle.bounds(), triangle.clip(&aabb())));
+    if let Some(ray) = ray().prepare() {
+        black_box((triangle.intersect(&ray, float(), float()), triangle.weights(&ray)));
+    }
+}
+
+fn spheres() {
+    black_box(sphere().bounds());
+    black_box(ray().prepare().map(|ray| sphere().intersect(&ray)));
+}
+
+fn transforms() {
+    if let Ok(transform) = black_box(Transform::new(matrix(), vector())) {
+        let inverse = transform.inverse();
+        black_box((inverse.point(vector()), inverse.vector(vector()), inverse.normal(vector())));
+        black_box((transform.ray(&ray()), transform.bounds(&aabb()), ray().at(float())));
+    }
+}
