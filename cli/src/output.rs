@@ -39,6 +39,18 @@ impl std::error::Error for OutputError {
     }
 }
 
+/// Refuses a path that [`write_atomically`] could not serve, before hours of work are spent on what goes there.
+pub fn check(path: &Path) -> Result<(), OutputError> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let outcome = match fs::metadata(folder) {
+        Err(error) => Err(error),
+        Ok(folder) if !folder.is_dir() => Err(ErrorKind::NotADirectory.into()),
+        Ok(_) if path.is_dir() => Err(ErrorKind::IsADirectory.into()),
+        Ok(_) => Ok(()),
+    };
+    outcome.map_err(|error| OutputError { path: path.to_owned(), error })
+}
+
 /// Writes a file through `write`, or standard output for `-`.
 ///
 /// The bytes go to a temporary file beside the target, which takes the target's name only when all
@@ -144,6 +156,10 @@ mod tests {
         assert!(complaint(&folder.path().join("no/out")).contains("directory does not exist"));
         assert!(complaint(&folder.path().join("file/out")).contains("a file stands where"));
         assert!(complaint(folder.path()).contains("is a directory"));
+        for bad in [folder.path().join("no/out"), folder.path().join("file/out"), folder.path().to_owned()] {
+            assert_eq!(check(&bad).unwrap_err().to_string(), complaint(&bad));
+        }
+        check(Path::new("-")).and(check(Path::new("out"))).unwrap();
     }
 
     #[cfg(unix)]

@@ -56,6 +56,7 @@ impl Axis {
     #[inline(always)]
     #[must_use]
     pub fn of(self, v: Vec3) -> f32 {
-        v.to_array()[self as usize]
+        // Cannot fail; written so that no panic is linked in where the compiler loses sight of the range.
+        v.to_array().get(self as usize).copied().unwrap_or(0.0)
     }
 }

@@ -134,6 +134,8 @@ pub struct PreparedRay {
     ray: Ray,
     /// By axis; the fourth is there so that an index of two bits needs no check.
     pub(crate) views: [AxisView; 4],
+    /// A bit per axis along which the ray meets higher coordinates first, repeated every four bits.
+    pub(crate) descending: u32,
     pub(crate) shear: Shear,
 }
 
@@ -175,7 +177,9 @@ impl PreparedRay {
         let [first, second, _] = axes;
         let slope = [first.of(d) * inverse, second.of(d) * inverse];
         let shear = Shear { axes, origin: axes.map(|axis| axis.of(o)), slope, inverse };
-        Some(Self { ray, views, shear })
+        let bit = |axis: Axis| u32::from(!views[axis as usize].ascends()) << axis as u32;
+        let descending = (bit(Axis::X) | bit(Axis::Y) | bit(Axis::Z)) * 0x1111_1111;
+        Some(Self { ray, views, descending, shear })
     }
 
     /// The ray as it was given, its interval cut to finite numbers.

@@ -44,16 +44,15 @@ impl Sphere {
     #[must_use]
     pub fn intersect(&self, ray: &PreparedRay) -> Option<[f32; 2]> {
         let d = ray.ray().direction.to_array().map(f64::from);
-        let o = ray.ray().origin.to_array();
-        let c = self.center.to_array();
-        let f = [0, 1, 2].map(|i: usize| f64::from(o[i]) - f64::from(c[i]));
+        let (o, c) = (ray.ray().origin, self.center);
+        let f = [(o.x, c.x), (o.y, c.y), (o.z, c.z)].map(|(o, c)| f64::from(o) - f64::from(c));
         let dot = |p: &[f64; 3], q: &[f64; 3]| p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
         let radius = f64::from(self.radius);
 
         // The part of f across the direction decides; it loses nothing to a far origin.
         let (a, b) = (dot(&d, &d), -dot(&f, &d));
         let s = b / a;
-        let across = [0, 1, 2].map(|i: usize| f[i] + s * d[i]);
+        let across = [f[0] + s * d[0], f[1] + s * d[1], f[2] + s * d[2]];
         let discriminant = radius * radius - dot(&across, &across);
         if !(discriminant >= 0.0) {
             return None;

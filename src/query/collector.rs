@@ -141,9 +141,9 @@ impl Collector for Nearest<'_> {
         }
         match self.hits.push(hit) {
             Ok(()) => {
-                if let Some(tail) = self.hits.get_mut(place..) {
-                    tail.rotate_right(1);
-                }
+                // Each one behind moves on by a place, the last one onto what was just pushed.
+                let mut moved = hit;
+                self.hits.iter_mut().skip(place).for_each(|other| core::mem::swap(other, &mut moved));
                 Next::Hit
             }
             // There is no room for any.

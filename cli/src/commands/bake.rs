@@ -14,13 +14,15 @@ use hitscan::{
 use super::print;
 use crate::{
     failure::{self, Failure},
-    output::write_atomically,
+    output::{self, write_atomically},
     scene::{Built, Geometry, Preset, Source, Structure},
     units::{count, parse_bytes, seconds},
 };
 
-/// Turns a mesh into an asset: its triangles, a structure over them and its materials in one block of bytes, which
-/// firmware includes and casts rays at where it lies. The same bytes on every host.
+/// Turn a mesh into the asset that firmware includes
+///
+/// An asset holds triangles, a structure over them and materials in one block of bytes, and rays are cast at it where it
+/// lies. Prints what the bytes are for and the worst case of a ray. The same bytes on every host.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Example: hitscan bake bunny.obj.gz -o bunny.hits --preset small --fit 3M")]
 pub struct Bake {
@@ -42,18 +44,20 @@ pub struct Bake {
 
 impl Bake {
     pub fn run(&self) -> Result<ExitCode, Failure> {
-        let Source::Model(geometry) = Source::load(&self.model)? else {
+        output::check(&self.output)?;
+        let source = Source::load(&self.model)?;
+        let Source::Model(geometry) = &source else {
             let what = format!("{}: is an asset already", self.model.display());
             return Err(Failure::new(what, "name the mesh it was made from"));
         };
-        let mesh = geometry.mesh()?;
-        let bare = bake(&mesh, &geometry, None)?.len() * 4;
+        let mesh = source.view(&self.model)?.mesh;
+        let bare = bake(&mesh, geometry, None)?.len() * 4;
         let mut options = self.preset.kd_options();
         if let Some(most) = self.fit {
             options = options.fit(room(most, bare)?);
         }
         let built = Built::with_options(&mesh, self.structure, self.preset, &options)?;
-        let words = bake(&mesh, &geometry, Some(&built))?;
+        let words = bake(&mesh, geometry, Some(&built))?;
         if let Some(most) = self.fit.filter(|most| words.len() * 4 > *most) {
             return Err(too_small(most, words.len() * 4));
         }

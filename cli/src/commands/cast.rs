@@ -12,6 +12,7 @@ use super::Threads;
 use crate::{
     failure::{self, Failure},
     hits::{HitRecord, write_csv, write_hits},
+    output,
     progress::Progress,
     rays::{RayRecord, read_rays},
     scene::{Queries, Source, StructureArgs},
@@ -21,7 +22,7 @@ use crate::{
 /// Rays that a thread takes at a time.
 const BATCH: usize = 1024;
 
-/// Casts the rays of a file at a mesh or an asset and writes what they hit.
+/// Cast the rays of a file at a mesh or an asset
 ///
 /// RAYS holds six little-endian f32 per ray: origin and direction, for t from 0 to infinity. HITS gets eight bytes per ray:
 /// t as f32, infinity for a miss, and the primitive's number in the file's order as u32, 0xffffffff for a miss. The same
@@ -106,6 +107,7 @@ impl Cast {
         if !self.csv && self.output == Path::new("-") && io::stdout().is_terminal() {
             return Err(Failure::new("hits are no text for a terminal", "give -o FILE, or --csv"));
         }
+        output::check(&self.output)?;
         let rays = read_rays(&self.rays, self.interval)?;
         let source = Source::load(&self.model)?;
         let view = source.view(&self.model)?;
@@ -113,14 +115,14 @@ impl Cast {
         let scene = built.scene(&view.mesh)?;
         let (hits, took) = self.cast(&*scene, &rays)?;
 
-        let name = &built.name;
-        let rate = rays.len() as f64 / took.max(1.0e-9) * 1.0e-6;
-        let (build, took, number) = (seconds(built.seconds), seconds(took), count(rays.len()));
-        failure::note(&format!("{name} built in {build}; {number} rays in {took}, {rate:.3} Mrays/s\n"));
         match self.csv {
             true => write_csv(&self.output, &hits, self.query.columns(), |hit| self.query.cells(hit))?,
             false => write_hits(&self.output, &hits)?,
         }
+        let name = &built.name;
+        let rate = rays.len() as f64 / took.max(1.0e-9) * 1.0e-6;
+        let (build, took, number) = (seconds(built.seconds), seconds(took), count(rays.len()));
+        failure::note(&format!("{name} built in {build}; {number} rays in {took}, {rate:.3} Mrays/s\n"));
         Ok(ExitCode::SUCCESS)
     }
 

@@ -3,9 +3,9 @@ use std::{path::PathBuf, process::ExitCode};
 use super::print;
 use crate::{difference::diff, failure::Failure, hits::read_hits};
 
-/// Counts the rays that two files of hits answer differently, bit for bit, and shows the first.
+/// Compare two files of hits
 ///
-/// Exit code 0 if there are none, 1 if there are some, 2 if a file cannot be read.
+/// Counts the rays that they answer differently, bit for bit, and shows the first. Exit code 0 if there are none, 1 if there are some, 2 if a file cannot be read.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Example: hitscan diff list.hits kdtree.hits")]
 pub struct Diff {

@@ -10,9 +10,10 @@ use crate::{
     units::count,
 };
 
-/// Describes a mesh or an asset: counts, bounds, whether it is closed, faults, sections, and what rays will cost.
+/// Describe a mesh or an asset
 ///
-/// A mesh is first put under the structure that is asked for.
+/// Prints counts, bounds, whether it is closed, triangles without area and duplicates, the bytes of an asset's sections, and
+/// the depth and expected cost of the structure, which is built first for a mesh.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Example: hitscan info bunny.obj.gz")]
 pub struct Info {

@@ -13,15 +13,10 @@ use crate::{failure::Failure, output::write_atomically};
 /// What to do.
 #[derive(Debug, clap::Subcommand)]
 pub enum Command {
-    /// Draw a mesh, an asset or the built-in scene into a PNG
     Render(render::Render),
-    /// Turn a mesh into the asset that firmware includes
     Bake(bake::Bake),
-    /// Describe a mesh or an asset
     Info(info::Info),
-    /// Cast rays from a file
     Cast(cast::Cast),
-    /// Compare two files of hits
     Diff(diff::Diff),
 }
 

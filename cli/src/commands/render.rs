@@ -15,7 +15,7 @@ use hitscan::{
 use super::{Threads, print};
 use crate::{
     failure::{self, Failure},
-    output::write_atomically,
+    output::{self, write_atomically},
     picture::{preview, write_png},
     progress::Progress,
     scene::{Built, Palette, Smooth, Source, StructureArgs, View, builtin::BuiltIn},
@@ -23,7 +23,7 @@ use crate::{
     units::{Size, count, seconds},
 };
 
-/// Draws a mesh, an asset or, without either, the built-in scene.
+/// Draw a mesh, an asset or, without either, the built-in scene
 ///
 /// Prints triangles, the structure's bytes and build time, the rays by kind and depth, their rate, and the share of time
 /// spent in queries. That share is an estimate: the clock is read around one query of each 61 per thread, as reading it
@@ -106,6 +106,7 @@ struct Picture {
 
 impl Render {
     pub fn run(&self) -> Result<ExitCode, Failure> {
+        output::check(&self.output)?;
         let begun = Instant::now();
         let (mut text, picture) = match &self.model {
             Some(path) => self.file(path)?,

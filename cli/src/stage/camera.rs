@@ -49,11 +49,8 @@ fn point(text: &str) -> Option<Vec3> {
 /// Which axis points up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum Up {
-    /// x
     X,
-    /// y
     Y,
-    /// z
     Z,
 }
 

@@ -22,15 +22,15 @@ impl Lighting {
     pub fn studio(bounds: &Aabb, view: &Viewpoint) -> Self {
         let (center, radius) = (bounds.center(), bounds.size().length() * 0.5);
         let backward = -view.camera.forward();
-        let lamp = center + (backward - view.right * 1.1 + view.above * 1.7) * (radius * 3.0);
+        let lamp = center + (backward * 0.8 - view.right * 1.4 + view.above * 1.5) * (radius * 3.0);
         let fill = backward * 0.4 + view.right + view.above * 0.6;
         Self {
             lights: vec![
-                Light::point(lamp, Vec3::new(0.80, 0.76, 0.68)),
+                Light::point(lamp, Vec3::new(0.92, 0.86, 0.76)),
                 Light::directional(-fill, Vec3::new(0.13, 0.16, 0.20)),
             ],
-            ambient: Vec3::new(0.17, 0.18, 0.20),
-            background: [Vec3::new(0.78, 0.80, 0.82), Vec3::new(0.16, 0.26, 0.42)],
+            ambient: Vec3::new(0.11, 0.12, 0.14),
+            background: [Vec3::new(0.62, 0.66, 0.70), Vec3::new(0.06, 0.13, 0.26)],
         }
     }
 }
@@ -42,5 +42,5 @@ pub fn glazed() -> Material {
 
 /// What it stands on.
 pub fn plate() -> Material {
-    Material::matte(Vec3::new(0.42, 0.44, 0.46)).with_highlights(0.1, 40.0).with_reflectivity(0.12)
+    Material::matte(Vec3::new(0.28, 0.30, 0.32)).with_highlights(0.1, 40.0).with_reflectivity(0.12)
 }

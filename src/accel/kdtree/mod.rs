@@ -62,7 +62,7 @@ pub struct KdTree<'a> {
 const fn least_bytes(primitives: usize) -> usize {
     // A single reference stands in the node; an odd number of narrow ones is padded to a word.
     let references = if primitives > 1 { primitives.saturating_mul(reference_bytes(primitives)) } else { 0 };
-    references.saturating_add((HEADER_WORDS + Node::WORDS) * 4).next_multiple_of(4)
+    references.saturating_add((HEADER_WORDS + Node::WORDS) * 4 + 3) / 4 * 4
 }
 
 /// The bytes of a reference: two where they suffice.

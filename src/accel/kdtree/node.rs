@@ -54,6 +54,14 @@ impl Node {
         self.link & 3
     }
 
+    /// Whether a ray meets the right child first; `mask` repeats, every four bits, one bit per axis.
+    ///
+    /// A shift by the link itself: shorter than to find the axis and look at its direction.
+    #[inline(always)]
+    pub(crate) const fn is_descended(self, mask: u32) -> bool {
+        mask >> (self.link & 31) & 1 != 0
+    }
+
     /// The number of an inner node's right child, or of a leaf's primitives.
     #[inline(always)]
     pub(crate) const fn number(self) -> u32 {

@@ -87,7 +87,7 @@ impl<'a> KdTraversal<'a> {
             // The child on the ray's side first.
             let view = &ray.views[axis as usize];
             let (left, right) = (cell.node + 1, node.number());
-            let (near, far) = if view.ascends() { (left, right) } else { (right, left) };
+            let (near, far) = if node.is_descended(ray.descending) { (right, left) } else { (left, right) };
             let distance = node.position() - view.origin;
             let entry = distance * view.entry;
             let exit = distance * view.exit + self.slack;

@@ -27,7 +27,8 @@ fn cut(polygon: &Polygon, axis: Axis, at: f64, keep: Keep) -> Option<Polygon> {
     for &corner in polygon {
         if kept(&previous) != kept(&corner) {
             let s = (at - previous[k]) / (corner[k] - previous[k]);
-            let mut crossing = [0, 1, 2].map(|i: usize| previous[i] + (corner[i] - previous[i]) * s);
+            let ([x0, y0, z0], [x1, y1, z1]) = (previous, corner);
+            let mut crossing = [(x0, x1), (y0, y1), (z0, z1)].map(|(from, to)| from + (to - from) * s);
             crossing[k] = at;
             result.push(crossing).ok()?;
         }

@@ -67,10 +67,11 @@ fn between(from: Vec3, to: Vec3) -> [Double; 3] {
 fn determinant(x: &[Double; 3], y: &[Double; 3], z: &[Double; 3]) -> (Double, f32) {
     let mut total = Double { high: 0.0, low: 0.0 };
     let mut scale = 0.0;
-    for (i, j, k) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
-        let (p, q) = (product(y[j], z[k]), product(y[k], z[j]));
-        total = sum(total, product(x[i], difference(p, q)));
-        scale += x[i].high.abs() * (p.high.abs() + q.high.abs());
+    let (&[x0, x1, x2], &[y0, y1, y2], &[z0, z1, z2]) = (x, y, z);
+    for (x, y, z) in [(x0, [y1, y2], [z1, z2]), (x1, [y2, y0], [z2, z0]), (x2, [y0, y1], [z0, z1])] {
+        let (p, q) = (product(y[0], z[1]), product(y[1], z[0]));
+        total = sum(total, product(x, difference(p, q)));
+        scale += x.high.abs() * (p.high.abs() + q.high.abs());
     }
     (total, scale * (1.0 / 2_199_023_255_552.0))
 }
@@ -91,7 +92,6 @@ pub(super) fn test(triangle: &Triangle, ray: &PreparedRay, front: Option<bool>) 
 fn facing(triangle: &Triangle, ray: &PreparedRay, d: &[Double; 3], a: &[Double; 3]) -> Option<bool> {
     let origin = ray.ray().origin;
     let (b, c) = (between(origin, triangle.b), between(origin, triangle.c));
-    let corners = [(triangle.b, triangle.c), (triangle.c, triangle.a), (triangle.a, triangle.b)];
     let proven = [(&b, &c), (&c, a), (a, &b)].map(|(p, q)| {
         let (value, error) = determinant(d, p, q);
         let error = error + 1.0e-34;
@@ -108,8 +108,7 @@ fn facing(triangle: &Triangle, ray: &PreparedRay, d: &[Double; 3], a: &[Double; 
     if proven.contains(&Some(Sign::Positive)) && proven.contains(&Some(Sign::Negative)) {
         return None;
     }
-    let signs = [0, 1, 2].map(|i: usize| proven[i].unwrap_or_else(|| exact::edge(ray, corners[i].0, corners[i].1)));
-    agreement(signs).map(|sign| sign == Sign::Negative)
+    agreement(exact::signs(triangle, ray, proven)).map(|sign| sign == Sign::Negative)
 }
 
 /// The correctly rounded parameter `a . N / d . N`, if 48 bits decide it.

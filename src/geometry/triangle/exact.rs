@@ -115,6 +115,13 @@ pub(super) fn edge(ray: &PreparedRay, p: Vec3, q: Vec3) -> Sign {
     sum.sign()
 }
 
+/// The signs of the edge functions opposite `a`, `b` and `c`; those proven already are taken as they are.
+pub(super) fn signs(triangle: &Triangle, ray: &PreparedRay, proven: [Option<Sign>; 3]) -> [Sign; 3] {
+    let Triangle { a, b, c } = *triangle;
+    let [u, v, w] = proven;
+    [(u, b, c), (v, c, a), (w, a, b)].map(|(sign, p, q)| sign.unwrap_or_else(|| edge(ray, p, q)))
+}
+
 /// The parameter of the plane, rounded to nearest even; infinite where it exceeds `f32`.
 #[inline(never)]
 pub(super) fn parameter(triangle: &Triangle, ray: &PreparedRay) -> f32 {

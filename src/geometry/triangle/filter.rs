@@ -40,10 +40,12 @@ pub(super) struct Sheared {
 #[inline(always)]
 pub(super) fn shear(corners: Corners<'_>, ray: &PreparedRay) -> Sheared {
     let Shear { axes: [kx, ky, kz], origin: [ox, oy, oz], slope: [sx, sy], .. } = ray.shear;
-    let z = corners.map(|v| v[kz as usize] - oz);
-    let x = [0, 1, 2].map(|i: usize| (corners[i][kx as usize] - ox) - sx * z[i]);
-    let y = [0, 1, 2].map(|i: usize| (corners[i][ky as usize] - oy) - sy * z[i]);
-    Sheared { x, y, z }
+    // Corner by corner, without an index: at opt-level "s" it would be checked.
+    let [a, b, c] = corners.map(|v| {
+        let z = v[kz as usize] - oz;
+        [(v[kx as usize] - ox) - sx * z, (v[ky as usize] - oy) - sy * z, z]
+    });
+    Sheared { x: [a[0], b[0], c[0]], y: [a[1], b[1], c[1]], z: [a[2], b[2], c[2]] }
 }
 
 /// Twice the areas that the ray spans with the edges opposite `a`, `b` and `c`.

@@ -28,7 +28,8 @@ impl Bounded {
 }
 
 fn between(from: Vec3, to: Vec3) -> [f64; 3] {
-    [0, 1, 2].map(|i: usize| f64::from(to.to_array()[i]) - f64::from(from.to_array()[i]))
+    let difference = |to: f32, from: f32| f64::from(to) - f64::from(from);
+    [difference(to.x, from.x), difference(to.y, from.y), difference(to.z, from.z)]
 }
 
 fn determinant(x: &[f64; 3], y: &[f64; 3], z: &[f64; 3]) -> Bounded {
@@ -71,7 +72,5 @@ fn facing(triangle: &Triangle, ray: &PreparedRay, edges: [Bounded; 3]) -> Option
     if proven.contains(&Some(Sign::Positive)) && proven.contains(&Some(Sign::Negative)) {
         return None;
     }
-    let corners = [(triangle.b, triangle.c), (triangle.c, triangle.a), (triangle.a, triangle.b)];
-    let signs = [0, 1, 2].map(|i: usize| proven[i].unwrap_or_else(|| exact::edge(ray, corners[i].0, corners[i].1)));
-    agreement(signs).map(|sign| sign == Sign::Negative)
+    agreement(exact::signs(triangle, ray, proven)).map(|sign| sign == Sign::Negative)
 }

@@ -1,0 +1,83 @@
+//! Assets: their bytes, their budget, and what is told about them.
+
+use crate::folder::{Folder, TETRAHEDRON};
+
+/// A waved square of `side` x `side` x 2 triangles.
+fn waves(side: usize) -> String {
+    let mut text = String::new();
+    for (y, x) in (0..=side).flat_map(|y| (0..=side).map(move |x| (y, x))) {
+        let (x, y) = (x as f32, y as f32);
+        text += &format!("v {x} {} {y}\n", (x * 0.7).sin() + (y * 0.9).cos());
+    }
+    for (y, x) in (0..side).flat_map(|y| (0..side).map(move |x| (y, x))) {
+        let corner = y * (side + 1) + x + 1;
+        let (right, below) = (corner + 1, corner + side + 1);
+        text += &format!("f {corner} {below} {right}\nf {right} {below} {}\n", below + 1);
+    }
+    text
+}
+
+#[test]
+fn the_table_adds_up() {
+    let folder = Folder::new();
+    folder.write("waves.obj", waves(20));
+    let text = folder.succeed("bake waves.obj -o waves.hits");
+    let bytes = |what: &str| -> usize {
+        let line = text.lines().find(|line| line.starts_with(what)).unwrap();
+        line[20..].split_whitespace().next().unwrap().replace(',', "").parse().unwrap()
+    };
+    let size = folder.read("waves.hits").len();
+    assert_eq!(bytes("total"), size);
+    assert_eq!(bytes("geometry") + bytes("structure") + bytes("materials") + bytes("header"), size);
+    assert!(text.contains("800 triangles") && text.contains("worst case of a ray: depth "), "{text}");
+    folder.succeed("bake waves.obj -o again.hits");
+    assert!(folder.read("again.hits") == folder.read("waves.hits"));
+}
+
+#[test]
+fn the_budget_is_kept_or_refused() {
+    let folder = Folder::new();
+    folder.write("waves.obj", waves(20));
+    folder.succeed("bake waves.obj -o free.hits -p fast");
+    let free = folder.read("free.hits").len();
+    for most in [free, free * 3 / 4, free / 2] {
+        folder.succeed(&format!("bake waves.obj -o tight.hits -p fast --fit {most}"));
+        assert!(folder.read("tight.hits").len() <= most);
+    }
+    let error = folder.refuse("bake waves.obj -o none.hits --fit 4K");
+    assert!(error.contains("--fit 4096") && error.contains("allow more bytes"), "{error}");
+}
+
+#[test]
+fn meshes_and_assets_are_described() {
+    let folder = Folder::new();
+    let open = TETRAHEDRON.replace("f 2 3 4", "f 1 2 3\nf 1 1 2");
+    folder.write("open.obj", open);
+    let has = |text: &str, what: &str, value: &str| {
+        let found = text.lines().any(|line| line.trim().starts_with(what) && line.ends_with(value));
+        assert!(found, "{what} {value}: {text}");
+    };
+    let text = folder.succeed("info tetrahedron.obj");
+    for (what, value) in [("triangles", " 4"), ("closed", "yes"), ("boundary", " 0"), ("size", "[1, 1, 1]")] {
+        has(&text, what, value);
+    }
+    let text = folder.succeed("info open.obj");
+    for (what, value) in [
+        ("triangles", " 5"),
+        ("closed", "no"),
+        ("boundary", " 2"),
+        ("non-manifold", " 2"),
+        ("without", " 1"),
+        ("dupl", " 1"),
+    ] {
+        has(&text, what, value);
+    }
+    folder.succeed("bake tetrahedron.obj -o asset.hits");
+    let text = folder.succeed("info asset.hits");
+    for (what, value) in
+        [("vertices", "48 bytes, version 1"), ("16-bit", "28 bytes, version 1"), ("depth", ""), ("expected", "")]
+    {
+        has(&text, what, value);
+    }
+    has(&text, "total", &format!("{} bytes", folder.read("asset.hits").len()));
+}

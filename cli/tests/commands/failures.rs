@@ -1,0 +1,163 @@
+//! Bad inputs and outputs: one line, code 2, and no half file, for every subcommand.
+
+use std::process::Stdio;
+
+use crate::folder::{Folder, TETRAHEDRON};
+
+/// Each subcommand at work on the model `{}`.
+const READERS: [&str; 4] =
+    ["render {} --size 8x8 --samples 1 -o out.png", "bake {} -o out.hits", "info {}", "cast {} one.rays -o out.bin"];
+
+/// A folder with one ray, too.
+fn folder() -> Folder {
+    let folder = Folder::new();
+    folder.write_rays("one.rays", &[[0.2, 0.2, 5.0, 0.0, 0.0, -1.0_f32]]);
+    folder
+}
+
+/// Every subcommand must refuse `model` in a line that contains `part`.
+fn refused(folder: &Folder, model: &str, part: &str) {
+    for reader in READERS {
+        let error = folder.refuse(&reader.replace("{}", model));
+        assert!(error.contains(part), "{reader}: {error}");
+    }
+}
+
+#[test]
+fn what_is_missing_or_no_mesh_is_named() {
+    let folder = folder();
+    refused(&folder, "missing.obj", "missing.obj: no such file");
+    refused(&folder, "missing.hits", "missing.hits: no such file");
+    refused(&folder, ".", "is a directory");
+    folder.write("empty.obj", "");
+    refused(&folder, "empty.obj", "is empty");
+    folder.write("diary.txt", "Dear diary, no mesh today.");
+    refused(&folder, "diary.txt", "neither a mesh nor an asset: use a file ending in .obj");
+    for name in ["garbage.obj", "garbage.stl", "garbage.ply", "garbage.glb", "garbage.obj.gz", "garbage.hits"] {
+        folder.write(name, [0xa7_u8, 0, 255, 13].repeat(99));
+        refused(&folder, name, name);
+    }
+}
+
+#[test]
+fn bad_triangles_are_named() {
+    let folder = folder();
+    folder.write("index.obj", TETRAHEDRON.replace("f 2 3 4", "f 2 3 5"));
+    refused(&folder, "index.obj", "index.obj:8: triangle 3 names vertex 5");
+    folder.write("nan.obj", TETRAHEDRON.replace("v 0 1 0", "v 0 nan 0"));
+    refused(&folder, "nan.obj", "nan.obj:3: vertex 2");
+    folder.write("huge.obj", TETRAHEDRON.replace("v 0 1 0", "v 0 3e38 0"));
+    refused(&folder, "huge.obj", "huge.obj: vertex 2 of triangle 0");
+    folder.write("points.obj", "v 0 0 0\nv 1 0 0\n");
+    refused(&folder, "points.obj", "no triangles");
+}
+
+#[test]
+fn damaged_assets_are_refused_everywhere() {
+    let folder = folder();
+    folder.succeed("bake tetrahedron.obj -o whole.hits");
+    let whole = folder.read("whole.hits");
+    for end in (0..whole.len()).step_by(3) {
+        folder.write("short.hits", &whole[..end]);
+        assert!(folder.refuse("info short.hits").contains("short.hits"));
+    }
+    for (name, place) in [("header.hits", 9), ("table.hits", 30), ("contents.hits", whole.len() - 1)] {
+        let mut bytes = whole.clone();
+        bytes[place] ^= 0x40;
+        folder.write(name, bytes);
+        for reader in ["render {}", "info {}", "cast {} one.rays -o out.bin"] {
+            folder.refuse(&reader.replace("{}", name));
+        }
+    }
+    assert!(folder.refuse("bake whole.hits -o again.hits").contains("is an asset already"));
+}
+
+#[test]
+fn bad_rays_and_hits_are_refused() {
+    let folder = folder();
+    folder.write("ragged.rays", [0; 50]);
+    assert!(folder.refuse("cast tetrahedron.obj ragged.rays -o out.bin").contains("not a whole number of rays"));
+    assert!(folder.refuse("cast tetrahedron.obj one.rays -o out.bin --interval").contains("rays of 32 bytes"));
+    folder.refuse("cast tetrahedron.obj missing.rays -o out.bin");
+    folder.refuse("cast tetrahedron.obj . -o out.bin");
+    folder.write("ragged.bin", [0; 9]);
+    folder.write("good.bin", [0; 8]);
+    for pair in ["ragged.bin good.bin", "good.bin ragged.bin", "good.bin missing.bin", ". good.bin"] {
+        folder.refuse(&format!("diff {pair}"));
+    }
+}
+
+#[test]
+fn outputs_that_cannot_be_written_are_refused() {
+    let folder = folder();
+    for target in ["no/such/folder/out", "."] {
+        for writer in ["render --size 8x8 --samples 1", "bake tetrahedron.obj", "cast tetrahedron.obj one.rays"] {
+            folder.refuse(&format!("{writer} -o {target}"));
+        }
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_is_reported() {
+    let folder = folder();
+    let writers = ["render --size 8x8 --samples 1", "bake tetrahedron.obj", "cast tetrahedron.obj one.rays"];
+    for writer in writers {
+        let output = folder.run(&format!("{writer} -o /dev/full"));
+        let errors = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{writer}: {errors}");
+        assert!(
+            errors.ends_with("hitscan: /dev/full: the disk is full: free some space or choose another disk\n"),
+            "{errors}"
+        );
+    }
+    folder.write("good.bin", [0; 8]);
+    let printers = [
+        "info tetrahedron.obj",
+        "diff good.bin good.bin",
+        "render --size 8x8 --samples 1 --preview",
+        "bake tetrahedron.obj",
+    ];
+    for printer in printers {
+        let full = std::fs::File::options().write(true).open("/dev/full").unwrap();
+        let output = folder.command(printer).stdout(full).output().unwrap();
+        assert_eq!(output.status.code(), Some(2), "{printer}");
+        assert!(String::from_utf8(output.stderr).unwrap().contains("the disk is full"), "{printer}");
+    }
+}
+
+#[test]
+fn a_reader_that_has_seen_enough_is_no_failure() {
+    let folder = folder();
+    folder.write_rays("many.rays", &[[0.2, 0.2, 5.0, 0.0, 0.0, -1.0_f32]; 50_000]);
+    for arguments in ["cast tetrahedron.obj many.rays --csv", "cast tetrahedron.obj many.rays", "render --help"] {
+        let mut child = folder.command(arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        drop(child.stdout.take());
+        let output = child.wait_with_output().unwrap();
+        assert!(output.status.success(), "{arguments}");
+        assert!(!String::from_utf8(output.stderr).unwrap().contains("hitscan: "), "{arguments}");
+    }
+}
+
+#[test]
+fn the_command_line_itself_is_checked() {
+    let folder = folder();
+    for arguments in [
+        "paint",
+        "render --colour red",
+        "cast",
+        "cast tetrahedron.obj",
+        "diff one",
+        "bake",
+        "info a b",
+        "bake a --fit 64Q",
+    ] {
+        assert!(folder.refuse(arguments).contains("--help"), "{arguments}");
+    }
+    for name in ["", "render ", "bake ", "info ", "cast ", "diff "] {
+        let text = folder.succeed(&format!("{name}--help"));
+        assert!(text.contains("Usage: hitscan"), "{text}");
+        assert!(text.contains("Example") || name.is_empty(), "{text}");
+    }
+    assert_eq!(folder.run("").status.code(), Some(2));
+}

@@ -1,0 +1,7 @@
+//! The program as its users meet it: arguments in, files, lines and exit codes out.
+
+mod bake;
+mod cast;
+mod failures;
+mod folder;
+mod render;
