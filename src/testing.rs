@@ -17,7 +17,7 @@ impl Random {
 
     /// A whole number below `n`.
     pub(crate) fn below(&mut self, n: u32) -> u32 {
-        (u64::from(self.next()) * u64::from(n) >> 32) as u32
+        ((u64::from(self.next()) * u64::from(n)) >> 32) as u32
     }
 
     /// A number from 0 up to 1.

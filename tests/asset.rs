@@ -142,7 +142,7 @@ fn every_byte_set_to_every_value_is_refused_or_harmless() {
             for shift in [0, 8, 16, 24] {
                 for value in 0..=255 {
                     let mut damaged = words.clone();
-                    damaged[index] = damaged[index] & !(0xff << shift) | value << shift;
+                    damaged[index] = damaged[index] & !(0xff << shift) | (value << shift);
                     if damaged[index] == words[index] {
                         continue;
                     }

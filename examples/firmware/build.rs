@@ -32,20 +32,26 @@ fn main() -> Result<(), Box<dyn Error>> {
     fs::copy(format!("memory/{board}.x"), out.join("memory.x"))?;
     println!("cargo:rustc-link-search={}", out.display());
 
-    // The micro:bit has 16 kB of RAM: what is built there is smaller.
-    let (along, around) = if board == "microbit" { (15, 4) } else { (100, 5) };
+    let mut code = asset(out, "KNOT", "A torus knot of 1,000 triangles.", (100, 5), &Options::balanced())?;
+    // The micro:bit has 16 kB of RAM: what is built there has 60 triangles.
+    let (along, around) = if board == "microbit" { (10, 3) } else { (100, 5) };
+    code += &asset(out, "REBUILT", "The knot that is also built on the device.", (along, around), &Options::small())?;
     let triangles = usize::from(along) * usize::from(around) * 2;
-    let mut code = asset(out, "KNOT", "A torus knot of 1,000 triangles.", 100, 5)?;
-    code += &asset(out, "REBUILT", "The knot that is also built on the device.", along, around)?;
     writeln!(code, "/// Triangles of [`REBUILT`].\npub const REBUILT_TRIANGLES: usize = {triangles};")?;
     Ok(fs::write(out.join("baked.rs"), code)?)
 }
 
 /// Writes a knot and its tree to a file; the `static` that includes it beside the answer to the camera's rays.
-fn asset(out: &Path, name: &str, doc: &str, along: u16, around: u16) -> Result<String, Box<dyn Error>> {
+fn asset(
+    out: &Path,
+    name: &str,
+    doc: &str,
+    (along, around): (u16, u16),
+    options: &Options,
+) -> Result<String, Box<dyn Error>> {
     let (vertices, triangles) = knot::mesh(along, around);
     let mesh = Mesh::new(&vertices, triangles.as_slice())?;
-    let tree = bake::kd_tree(&mesh, &Options::balanced())?;
+    let tree = bake::kd_tree(&mesh, options)?;
     let tree = KdTree::open(&tree)?;
     let words = Baker::new().mesh(&mesh).kd_tree(&tree).finish();
     let file = out.join(name).with_extension("hits");

@@ -16,7 +16,7 @@ use crate::{
     failure::{self, Failure},
     output::{self, write_atomically},
     scene::{Built, Geometry, Preset, Source, Structure},
-    units::{count, parse_bytes, seconds},
+    units::{count, parse_bytes},
 };
 
 /// Turn a mesh into the asset that firmware includes
@@ -127,7 +127,7 @@ fn table(words: &[u32], built: &Built, triangles: usize, output: &Path) -> Resul
         // Writing to a string cannot fail.
         let _ = writeln!(text, "{what:<20}{:>14}{:>14.2}", count(bytes), bytes as f64 / triangles as f64);
     }
-    let _ = writeln!(text, "structure: {}, built in {}", built.name, seconds(built.seconds));
+    let _ = writeln!(text, "structure: {}, {}", built.name, built.time());
     let _ = match built.tree()? {
         Some(tree) => {
             let (depth, nodes) = (tree.depth(), count(tree.node_count()));

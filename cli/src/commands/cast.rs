@@ -121,8 +121,8 @@ impl Cast {
         }
         let name = &built.name;
         let rate = rays.len() as f64 / took.max(1.0e-9) * 1.0e-6;
-        let (build, took, number) = (seconds(built.seconds), seconds(took), count(rays.len()));
-        failure::note(&format!("{name} built in {build}; {number} rays in {took}, {rate:.3} Mrays/s\n"));
+        let (built, took, number) = (built.time(), seconds(took), count(rays.len()));
+        failure::note(&format!("{name} {built}; {number} rays in {took}, {rate:.3} Mrays/s\n"));
         Ok(ExitCode::SUCCESS)
     }
 

@@ -1,8 +1,8 @@
-use std::{fmt::Write as _, path::PathBuf, process::ExitCode};
+use std::{path::PathBuf, process::ExitCode};
 
 use hitscan::{Primitives, asset::Asset, geometry::Aabb};
 
-use super::print;
+use super::{line, print};
 use crate::{
     failure::Failure,
     progress::Progress,
@@ -42,11 +42,6 @@ impl Info {
         print(&text)?;
         Ok(ExitCode::SUCCESS)
     }
-}
-
-/// Adds a line `what  value`. Writing to a string cannot fail.
-fn line(text: &mut String, what: &str, value: impl std::fmt::Display) {
-    let _ = writeln!(text, "  {what:<20} {value}");
 }
 
 fn describe_mesh(text: &mut String, view: &View<'_>, anatomy: &Anatomy) {

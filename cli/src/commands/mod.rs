@@ -6,7 +6,13 @@ mod diff;
 mod info;
 mod render;
 
-use std::{num::NonZeroUsize, path::Path, process::ExitCode, thread};
+use std::{
+    fmt::{self, Write as _},
+    num::NonZeroUsize,
+    path::Path,
+    process::ExitCode,
+    thread,
+};
 
 use crate::{failure::Failure, output::write_atomically};
 
@@ -39,6 +45,11 @@ impl Command {
 /// Prints a report on standard output.
 fn print(text: &str) -> Result<(), Failure> {
     Ok(write_atomically(Path::new("-"), |out| out.write_all(text.as_bytes()))?)
+}
+
+/// Adds a line `  what  value` to a report. Writing to a string cannot fail.
+fn line(text: &mut String, what: &str, value: impl fmt::Display) {
+    let _ = writeln!(text, "  {what:<18} {value}");
 }
 
 /// The option that sets how many threads work.

@@ -1,5 +1,4 @@
 use std::{
-    fmt::Write as _,
     iter,
     path::{Path, PathBuf},
     process::ExitCode,
@@ -12,7 +11,7 @@ use hitscan::{
     render::{Camera, Caster, Materials, Renderer, Terms},
 };
 
-use super::{Threads, print};
+use super::{Threads, line, print};
 use crate::{
     failure::{self, Failure},
     output::{self, write_atomically},
@@ -26,8 +25,8 @@ use crate::{
 /// Draw a mesh, an asset or, without either, the built-in scene
 ///
 /// Prints triangles, the structure's bytes and build time, the rays by kind and depth, their rate, and the share of time
-/// spent in queries. That share is an estimate: the clock is read around one query of each 61 per thread, as reading it
-/// around all of them would distort what it measures.
+/// spent in queries. That share is an estimate: reading the clock around every query would distort it, so each thread times
+/// one in 61 of its own; where other programs compete for the processor, it is rough.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples: hitscan render\n          \
                         hitscan render bunny.obj.gz -o bunny.png --size 1280x960 --camera 0,0.2,0.4/0,0.1,0")]
@@ -236,11 +235,6 @@ impl Render {
         line(text, "time in queries", format!("about {share:.0} % on {threads} {plural} (sampled)"));
         line(text, "total", seconds(total));
     }
-}
-
-/// Adds a line `what  value`. Writing to a string cannot fail.
-fn line(text: &mut String, what: &str, value: impl std::fmt::Display) {
-    let _ = writeln!(text, "  {what:<16} {value}");
 }
 
 /// What is shown, under which structure.

@@ -94,7 +94,7 @@ pub struct StructureArgs {
     #[arg(short, long, value_name = "NAME")]
     pub structure: Option<Structure>,
     /// What the structure is tuned for
-    #[arg(short, long, value_name = "PRESET", default_value = "balanced", hide_possible_values = false)]
+    #[arg(short, long, value_name = "PRESET", default_value = "balanced")]
     pub preset: Preset,
 }
 
@@ -106,7 +106,9 @@ pub struct Built {
     /// How it came about, for people.
     pub name: String,
     /// What that took.
-    pub seconds: f64,
+    seconds: f64,
+    /// Whether it was read and checked instead of built.
+    opened: bool,
 }
 
 impl Built {
@@ -131,12 +133,19 @@ impl Built {
             }
             _ => (None, structure.name().to_owned()),
         };
-        Ok(Self { words, name, seconds: progress.finish() })
+        Ok(Self { words, name, seconds: progress.finish(), opened: false })
     }
 
-    /// The kD-tree of an asset, checked when it was opened.
+    /// The kD-tree of an asset, which took so many seconds to check.
     pub fn of_asset(tree: &KdTree<'_>, seconds: f64) -> Self {
-        Self { words: Some(tree.as_words().to_vec()), name: "kdtree of the asset".to_owned(), seconds }
+        let words = Some(tree.as_words().to_vec());
+        Self { words, name: "kdtree of the asset".to_owned(), seconds, opened: true }
+    }
+
+    /// How long it took to get it.
+    pub fn time(&self) -> String {
+        let verb = if self.opened { "checked" } else { "built" };
+        format!("{verb} in {}", units::seconds(self.seconds))
     }
 
     /// The kD-tree, if it is one.
@@ -164,8 +173,12 @@ impl Built {
     /// Name, bytes and build time in one line.
     pub fn describe(&self, primitives: usize) -> String {
         let per_primitive = self.bytes() as f64 / primitives.max(1) as f64;
-        let (bytes, seconds) = (units::count(self.bytes()), units::seconds(self.seconds));
-        format!("{}, {bytes} bytes ({per_primitive:.1} per primitive), {seconds}", self.name)
+        format!(
+            "{}, {} bytes ({per_primitive:.1} per primitive), {}",
+            self.name,
+            units::count(self.bytes()),
+            self.time()
+        )
     }
 }
 

@@ -47,12 +47,13 @@ impl<'a> InlinedTree<'a> {
 
     /// The first hit of the ray with a triangle of `mesh`.
     pub fn closest_hit(&self, mesh: &Mesh<'_>, ray: &Ray, views: &[View; 3]) -> Option<Hit> {
-        let ray = ray.prepare()?;
+        let prepared = ray.prepare();
+        let ray = prepared.as_ref()?;
         let from = Hit { t: ray.ray().t_min, primitive: 0 };
         let mut best = Hit { t: ray.ray().t_max, primitive: u32::MAX };
-        self.walk(&ray, views, best.t, |index| {
+        self.walk(ray, views, best.t, |index| {
             if mesh.mask(index) & ray.ray().mask != 0
-                && let Some(crossing) = mesh.triangle(index).intersect(&ray, from.t, best.t)
+                && let Some(crossing) = mesh.triangle(index).intersect(ray, from.t, best.t)
             {
                 let hit = Hit { t: crossing.t, primitive: index };
                 if !hit.precedes(&from) && hit.precedes(&best) {

@@ -31,11 +31,15 @@ fn exception(_frame: &mut riscv_rt::TrapFrame) {
     process::exit(FAULT)
 }
 
-/// Reads an address where no board has anything.
+/// Executes what is no instruction.
 pub fn fault() {
-    let nowhere = core::hint::black_box(0xf000_0000_usize) as *const u32;
-    // SAFETY: meant to fault.
-    unsafe { nowhere.read_volatile() };
+    // SAFETY: the handlers above do not return.
+    unsafe {
+        #[cfg(target_arch = "arm")]
+        asm!("udf #0");
+        #[cfg(target_arch = "riscv32")]
+        asm!("unimp");
+    }
 }
 
 /// Executes 2 instructions `n` times, and a few before.

@@ -23,7 +23,8 @@ fn with<P: Primitives>(primitives: &P) {
         cast(Scene::new(list, primitives));
     }
     let mut memory = [0; 1024];
-    if let Ok(tree) = KdTree::build(primitives, &mut Arena::new(black_box(memory.as_mut_slice())), &Options::default()) {
+    if let Ok(tree) = KdTree::build(primitives, &mut Arena::new(black_box(memory.as_mut_slice())), &Options::default())
+    {
         cast(Scene::new(tree, primitives));
     }
 }

@@ -17,7 +17,7 @@ use super::{
     open::Header,
     options::{Options, Split},
     reference_bytes,
-    split::{Item, Place, Plane, choose},
+    split::{Item, Place, Plane, SCRATCH_WORDS, choose},
 };
 use crate::{
     arena::Full,
@@ -56,8 +56,9 @@ pub(super) const fn words(primitives: usize, options: &Options) -> usize {
     // In the stream a reference takes a word, of which the budget may have counted half.
     let bytes = options.bytes(primitives);
     let (stream, packed) = (bytes / 2, bytes / 4);
-    // Beside the stream stand first the items, then the references on their way behind the nodes.
-    let items = most_items(primitives).saturating_mul(ITEM_WORDS);
+    // Beside the stream stand first the items and what is sorted of them, then the references on their way behind the nodes.
+    let sorted = primitives.saturating_mul(SCRATCH_WORDS);
+    let items = most_items(primitives).saturating_mul(ITEM_WORDS).saturating_add(sorted);
     (HEADER_WORDS + TASKS * TASK_WORDS + Node::WORDS).saturating_add(stream).saturating_add(if items > packed {
         items
     } else {
@@ -214,11 +215,18 @@ impl<'w, 'p, P: Primitives + ?Sized> Builder<'w, 'p, P> {
         (stream, bytemuck::try_cast_slice_mut(items).unwrap_or_default())
     }
 
-    /// The items of a cell.
+    /// The items of a cell, which are the topmost.
     fn items(&mut self, task: &Task) -> &mut [Item] {
-        let (_, items) = self.parts();
-        let first = items.len().saturating_sub(task.top as usize);
-        items.get_mut(first..first.saturating_add(task.count as usize)).unwrap_or_default()
+        self.scratch(task).1
+    }
+
+    /// What is free above the items of a cell, and these.
+    fn scratch(&mut self, task: &Task) -> (&mut [u32], &mut [Item]) {
+        let first = self.words.len().saturating_sub(task.top as usize * ITEM_WORDS);
+        let (front, items) = self.words.split_at_mut_checked(first).unwrap_or_default();
+        let free = front.get_mut(self.used..).unwrap_or_default();
+        let items = items.get_mut(..task.count as usize * ITEM_WORDS).unwrap_or_default();
+        (free, bytemuck::try_cast_slice_mut(items).unwrap_or_default())
     }
 
     /// Makes sure that `words` can be added to the stream.
@@ -262,8 +270,9 @@ impl<'w, 'p, P: Primitives + ?Sized> Builder<'w, 'p, P> {
             return Ok(None);
         }
         let options = self.options;
-        let items = self.items(task);
-        let Some(plane) = choose(items, &task.cell, options) else { return Ok(None) };
+        self.reserve(task.count as usize * SCRATCH_WORDS)?;
+        let (scratch, items) = self.scratch(task);
+        let Some(plane) = choose(items, &task.cell, options, scratch) else { return Ok(None) };
 
         // Sort: left, both, right.
         let (mut left, mut both_end, mut right) = (0, 0, items.len());

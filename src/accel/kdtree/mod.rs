@@ -1,14 +1,14 @@
 //! The kD-tree: space halved by planes, in nodes of 8 bytes.
 //!
 //! Built top-down by one skeleton with three ways to [`Split`]; the surface area heuristic with clipped ("perfect")
-//! splits after Wald and Havran, *On building fast kd-trees for ray tracing, and on doing that in O(N log N)*, 2006, by
-//! bins where there are many primitives and exactly where there are few. A [`KdTree`] is made by [`KdTree::build`] or
+//! splits after Wald and Havran, *On building fast kd-trees for ray tracing, and on doing that in O(N log N)*, 2006. A [`KdTree`] is made by [`KdTree::build`] or
 //! checked by [`KdTree::open`]; after either, no walk can leave its words or fail to end.
 
 mod build;
 mod node;
 mod open;
 mod options;
+mod sort;
 mod split;
 mod traverse;
 

