@@ -70,7 +70,7 @@ struct Verdict {
 
 impl Verdict {
     fn judge(&mut self, truth: &Truth, ray: &Ray, hit: Option<Hit>, delta: f64) {
-        let length = ray.direction.as_dvec3().length();
+        let length = ray.direction.to_array().map(f64::from).iter().map(|x| x * x).sum::<f64>().sqrt();
         let expected = truth.is(Truth::HIT);
         let tolerance = 1.0e-4 * if expected { truth.t.abs() } else { 0.0 } + 8.0 * delta / length;
         let t = hit.map_or(f64::INFINITY, |hit| f64::from(hit.t));

@@ -45,7 +45,9 @@ fuzz_target!(|changes: Vec<(u16, u32)>| {
     let Ok(asset) = Asset::from_words(&words) else { return };
     let Ok(scene): Result<Scene<KdTree, Mesh>, _> = asset.scene() else { return };
     let nodes = scene.accelerator().node_count() as u32;
-    for ray in [Ray::new(Vec3::NEG_ONE, Vec3::ONE), Ray::new(Vec3::ONE, Vec3::Z), Ray::new(Vec3::MAX * 1.0e-3, Vec3::NEG_X)] {
+    for ray in
+        [Ray::new(Vec3::NEG_ONE, Vec3::ONE), Ray::new(Vec3::ONE, Vec3::Z), Ray::new(Vec3::MAX * 1.0e-3, Vec3::NEG_X)]
+    {
         assert!(matches!(scene.begin(&ray).advance(nodes), Progress::Done(_)));
         let _ = scene.hits(&ray).count();
     }

@@ -60,7 +60,7 @@ impl<'a> KdTraversal<'a> {
 
     #[inline(always)]
     fn advance<const BOUNDED: bool>(&mut self, ray: &PreparedRay, t_max: f32, budget: &mut u32) -> Step<Leaf<'a>> {
-        let end = beyond(t_max);
+        let (nodes, slack, end) = (self.nodes, self.slack, beyond(t_max));
         // The cell at hand is in registers, not in `self`: that is a third of the instructions.
         let Some(mut cell) = self.next.take().or_else(|| self.pop(end)) else { return Step::Done };
         loop {
@@ -71,7 +71,7 @@ impl<'a> KdTraversal<'a> {
                 }
                 *budget -= 1;
             }
-            let Some(node) = self.nodes.get(cell.node as usize) else { return Step::Done };
+            let Some(node) = nodes.get(cell.node as usize) else { return Step::Done };
             let axis = node.axis_or_leaf();
             if axis == Node::LEAF {
                 match node.number() {
@@ -90,7 +90,7 @@ impl<'a> KdTraversal<'a> {
             let (near, far) = if node.is_descended(ray.descending) { (right, left) } else { (left, right) };
             let distance = node.position() - view.origin;
             let entry = distance * view.entry;
-            let exit = distance * view.exit + self.slack;
+            let exit = distance * view.exit + slack;
             // Written so that NaN, the ray in the plane, visits both.
             if entry > cell.exit {
                 cell.node = near;
