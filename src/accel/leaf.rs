@@ -1,4 +1,4 @@
-/// The primitives of a leaf, as numbers: consecutive ones, or references of 16 or 32 bits.
+/// The primitives of a leaf: references of 16 or 32 bits, resolved to numbers.
 #[derive(Clone, Copy, Debug)]
 pub struct Leaf<'a> {
     next: u32,
@@ -6,35 +6,37 @@ pub struct Leaf<'a> {
     references: References<'a>,
 }
 
-/// Where a structure keeps its references, in words.
+/// A structure's references, in words.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum References<'a> {
-    /// Nowhere: the numbers themselves.
-    None,
-    /// Two per word, the lower half first.
-    Narrow(&'a [u32]),
-    /// One per word.
-    Wide(&'a [u32]),
+pub(crate) struct References<'a> {
+    words: &'a [u32],
+    /// 1 if there are two per word, the lower half first; 0 if one. As a number, so that it needs no branch.
+    halves: u32,
 }
 
-impl References<'_> {
+impl<'a> References<'a> {
+    /// None.
+    pub(crate) const NOTHING: Self = Self::wide(&[]);
+
+    /// Two per word.
+    pub(crate) const fn narrow(words: &'a [u32]) -> Self {
+        Self { words, halves: 1 }
+    }
+
+    /// One per word.
+    #[inline(always)]
+    pub(crate) const fn wide(words: &'a [u32]) -> Self {
+        Self { words, halves: 0 }
+    }
+
     #[inline(always)]
     pub(crate) fn get(&self, index: u32) -> Option<u32> {
-        match self {
-            Self::None => Some(index),
-            Self::Narrow(words) => words.get(index as usize / 2).map(|word| word >> (16 * (index % 2)) & 0xffff),
-            Self::Wide(words) => words.get(index as usize).copied(),
-        }
+        let word = self.words.get((index >> self.halves) as usize)?;
+        Some(word >> (16 * (index & self.halves)) & u32::MAX >> (16 * self.halves))
     }
 }
 
 impl<'a> Leaf<'a> {
-    /// The consecutive numbers from `first`.
-    #[inline(always)]
-    pub(crate) const fn consecutive(first: u32, count: u32) -> Self {
-        Self { next: first, end: first.saturating_add(count), references: References::None }
-    }
-
     /// `count` references from the one at `first`.
     #[inline(always)]
     pub(crate) const fn of(references: References<'a>, first: u32, count: u32) -> Self {

@@ -1,4 +1,6 @@
-use super::{Accelerator, Leaf, Step, Traversal};
+use core::ops::Range;
+
+use super::{Accelerator, Step, Traversal};
 use crate::{
     error::BuildError,
     geometry::{Aabb, PreparedRay},
@@ -57,16 +59,16 @@ pub struct ListTraversal {
 }
 
 impl Traversal for ListTraversal {
-    type Leaf = Leaf<'static>;
+    type Leaf = Range<u32>;
 
     #[inline]
-    fn next_leaf(&mut self, _ray: &PreparedRay, _t_max: f32) -> Option<Leaf<'static>> {
+    fn next_leaf(&mut self, _ray: &PreparedRay, _t_max: f32) -> Option<Range<u32>> {
         let first = core::mem::replace(&mut self.next, self.len);
-        (first < self.len).then(|| Leaf::consecutive(first, self.len - first))
+        (first < self.len).then_some(first..self.len)
     }
 
     /// Each primitive counts as a node.
-    fn step(&mut self, _ray: &PreparedRay, _t_max: f32, budget: &mut u32) -> Step<Leaf<'static>> {
+    fn step(&mut self, _ray: &PreparedRay, _t_max: f32, budget: &mut u32) -> Step<Range<u32>> {
         let (first, count) = (self.next, (self.len - self.next).min(*budget));
         if first == self.len {
             return Step::Done;
@@ -76,6 +78,6 @@ impl Traversal for ListTraversal {
         }
         self.next += count;
         *budget -= count;
-        Step::Leaf(Leaf::consecutive(first, count))
+        Step::Leaf(first..first + count)
     }
 }

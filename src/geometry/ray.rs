@@ -1,6 +1,7 @@
 use glam::Vec3;
 
 use super::{Axis, in_range};
+use crate::math::{greatest, least};
 
 /// The relative slack of every exit, 2^-16 (rule R2 of ARCHITECTURE.md): exits are multiplied by `1 + WIDENING`.
 ///
@@ -168,7 +169,7 @@ impl PreparedRay {
             return None;
         }
         // Finite limits spare every primitive the question whether its `t` overflowed.
-        let ray = Ray { t_min: ray.t_min.max(f32::MIN), t_max: ray.t_max.min(f32::MAX), ..*ray };
+        let ray = Ray { t_min: greatest(ray.t_min, f32::MIN), t_max: least(ray.t_max, f32::MAX), ..*ray };
         let forward = ray.t_min >= 0.0;
         let [x, y, z] = Axis::ALL.map(|axis| AxisView::new(axis.of(o), axis.of(d), forward));
         let views = [x, y, z, z];

@@ -34,7 +34,8 @@ pub struct Span {
 impl Span {
     /// The hits from `from`, itself included, up to `until`, itself excluded.
     #[inline(always)]
-    pub(crate) const fn new(from: Hit, until: Hit) -> Self {
+    #[must_use]
+    pub const fn new(from: Hit, until: Hit) -> Self {
         Self { from, until, enter: f32::NEG_INFINITY, exit: f32::INFINITY }
     }
 

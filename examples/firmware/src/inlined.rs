@@ -3,7 +3,7 @@
 //! The same nodes in the same order by the same rules as in `src/accel/kdtree/traverse.rs`, for rays with `t >= 0`. It
 //! reads the tree's words itself, so that it needs no more than what the library makes public.
 
-use hitscan::{Accelerator, Hit, KdTree, Mesh, PreparedRay, Primitives, Ray, geometry::Aabb, kdtree::MAX_DEPTH};
+use hitscan::{Accelerator, Hit, KdTree, Mesh, PreparedRay, Primitives, Ray, Span, geometry::Aabb, kdtree::MAX_DEPTH};
 
 /// Words before the nodes.
 const HEADER_WORDS: usize = 10;
@@ -53,12 +53,9 @@ impl<'a> InlinedTree<'a> {
         let mut best = Hit { t: ray.ray().t_max, primitive: u32::MAX };
         self.walk(ray, views, best.t, |index| {
             if mesh.mask(index) & ray.ray().mask != 0
-                && let Some(crossing) = mesh.triangle(index).intersect(ray, from.t, best.t)
+                && let Some(hit) = mesh.intersect(index, ray, &Span::new(from, best))
             {
-                let hit = Hit { t: crossing.t, primitive: index };
-                if !hit.precedes(&from) && hit.precedes(&best) {
-                    best = hit;
-                }
+                best = hit;
             }
             best.t
         });

@@ -101,7 +101,7 @@ impl<'a> KdTree<'a> {
     const NOTHING: Self = Self {
         words: &[],
         nodes: &[],
-        references: References::None,
+        references: References::NOTHING,
         reference_count: 0,
         primitives: 0,
         depth: 0,

@@ -172,7 +172,7 @@ impl<'a> KdTree<'a> {
         Some(Self {
             words,
             nodes: bytemuck::try_cast_slice(nodes).ok()?,
-            references: if narrow { References::Narrow(references) } else { References::Wide(references) },
+            references: if narrow { References::narrow(references) } else { References::wide(references) },
             reference_count: header.references,
             primitives: header.primitives,
             depth: header.depth,

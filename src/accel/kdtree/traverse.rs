@@ -79,7 +79,7 @@ impl<'a> KdTraversal<'a> {
                         Some(next) => cell = next,
                         None => return Step::Done,
                     },
-                    1 => return Step::Leaf(Leaf::consecutive(node.first(), 1)),
+                    1 => return Step::Leaf(Leaf::of(References::wide(node.payload()), 0, 1)),
                     count => return Step::Leaf(Leaf::of(self.references, node.first(), count)),
                 }
                 continue;
