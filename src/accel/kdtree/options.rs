@@ -48,7 +48,7 @@ impl Options {
     /// The fewest bytes that still make a tree: about 20 per triangle.
     #[must_use]
     pub const fn small() -> Self {
-        Self { intersection_cost: 0.22, bytes_per_primitive: 48, ..Self::balanced() }
+        Self { intersection_cost: 0.33, bytes_per_primitive: 48, ..Self::balanced() }
     }
 
     /// Nearly as fast as [`fast`](Self::fast) in less than half the bytes.
@@ -69,7 +69,7 @@ impl Options {
     /// The least time per ray.
     #[must_use]
     pub const fn fast() -> Self {
-        Self { intersection_cost: 1.2, bytes_per_primitive: 200, ..Self::balanced() }
+        Self { intersection_cost: 1.0, bytes_per_primitive: 200, ..Self::balanced() }
     }
 
     /// The same, but at most `bytes` in all.

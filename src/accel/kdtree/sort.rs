@@ -1,6 +1,6 @@
 //! Sorting coordinates in borrowed memory, in linear time, without a panic to link.
 
-/// Up to this many keys an insertion sort is faster than counting.
+/// Up to this many keys, to compare each with each is faster than to count digits.
 const FEW: usize = 64;
 
 /// Values of a digit.
@@ -21,30 +21,24 @@ pub(super) fn coordinate(key: u32) -> f32 {
 
 /// Sorts `keys`; `scratch` is at least as long.
 pub(super) fn sort(keys: &mut [u32], scratch: &mut [u32]) {
-    match scratch.get_mut(..keys.len()) {
-        Some(scratch) if keys.len() > FEW => radix(keys, scratch),
-        _ => insertion(keys),
-    }
+    let Some(scratch) = scratch.get_mut(..keys.len()) else { return };
+    if keys.len() <= FEW { by_rank(keys, scratch) } else { radix(keys, scratch) }
 }
 
-fn insertion(keys: &mut [u32]) {
-    for end in 1..keys.len() {
-        let Some(head) = keys.get_mut(..=end) else { return };
-        // What is greater moves up by a place, until the last one fits.
-        let Some((&mut last, sorted)) = head.split_last_mut() else { return };
-        let mut place = sorted.len();
-        while let Some(&before) = place.checked_sub(1).and_then(|i| head.get(i)) {
-            if before <= last {
-                break;
-            }
-            if let Some(slot) = head.get_mut(place) {
-                *slot = before;
-            }
-            place -= 1;
+/// Counts for each key how many go before it: more comparisons than need be, but none of them is waited for.
+fn by_rank(keys: &mut [u32], scratch: &mut [u32]) {
+    // Signed, as vectors compare.
+    let signed = |key: u32| (key ^ 0x8000_0000) as i32;
+    for (index, &key) in keys.iter().enumerate() {
+        let (before, behind) = keys.split_at_checked(index).unwrap_or_default();
+        let place = before.iter().map(|&other| u32::from(signed(other) <= signed(key))).sum::<u32>()
+            + behind.iter().map(|&other| u32::from(signed(other) < signed(key))).sum::<u32>();
+        if let Some(slot) = scratch.get_mut(place as usize) {
+            *slot = key;
         }
-        if let Some(slot) = head.get_mut(place) {
-            *slot = last;
-        }
+    }
+    for (slot, &key) in keys.iter_mut().zip(scratch.iter()) {
+        *slot = key;
     }
 }
 

@@ -16,7 +16,7 @@ const WORDS: usize = KdTree::words(REBUILT_TRIANGLES, &Options::small());
 static MEMORY: ConstStaticCell<[u32; WORDS]> = ConstStaticCell::new([0; WORDS]);
 
 /// What any query and the builder may take.
-const LIMIT: usize = 2304;
+const LIMIT: usize = 3072;
 
 /// The most that any of the camera's rays takes.
 fn most(mut query: impl FnMut(&Ray)) -> usize {
