@@ -210,7 +210,7 @@ impl<'a> Walker<'a> {
                 continue;
             }
             let (payload, link) = (nodes[2 * index], nodes[2 * index + 1]);
-            let number = (link >> 2) as usize;
+            let number = (link >> 4) as usize;
             if link & 3 == 3 {
                 for reference in payload as usize..payload as usize + number {
                     let word = || references[reference / 2] >> (16 * (reference % 2)) & 0xffff;
@@ -219,7 +219,10 @@ impl<'a> Walker<'a> {
                 continue;
             }
             let axis = Axis::ALL[(link & 3) as usize];
-            let (near, far) = if self.ascends(axis) { (index + 1, number) } else { (number, index + 1) };
+            // Of a cut's children one is empty, and the other is the next node, by either number.
+            let children = [(index + 1, link & 4 == 0), (number, link & 8 == 0)];
+            let [left, right] = children.map(|(child, there)| there.then_some(child));
+            let (near, far) = if self.ascends(axis) { (left, right) } else { (right, left) };
             let distance = f32::from_bits(payload) - axis.of(self.ray.origin);
             let view = self.views[axis as usize];
             let (entry, leave) = (distance * view.0, distance * view.1 + slack);
@@ -230,12 +233,12 @@ impl<'a> Walker<'a> {
             };
             let entry = if self.mutant == EnterAtExit { leave } else { entry };
             if only_near {
-                stack.push((near, enter, exit));
+                stack.extend(near.map(|near| (near, enter, exit)));
             } else if only_far {
-                stack.push((far, enter, exit));
+                stack.extend(far.map(|far| (far, enter, exit)));
             } else {
-                stack.push((far, if entry > enter { entry } else { enter }, exit));
-                stack.push((near, enter, if leave < exit { leave } else { exit }));
+                stack.extend(far.map(|far| (far, if entry > enter { entry } else { enter }, exit)));
+                stack.extend(near.map(|near| (near, enter, if leave < exit { leave } else { exit })));
             }
         }
         self.best

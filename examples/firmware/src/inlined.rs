@@ -73,18 +73,40 @@ impl<'a> InlinedTree<'a> {
         if enter > exit {
             return;
         }
-        let mut stack: heapless::Vec<(u32, f32, f32), MAX_DEPTH> = heapless::Vec::new();
+        // The nearest far child that begins before the best hit; no plane's parameter is NaN here.
+        let pop = |stack: &mut heapless::Vec<(u32, f32, f32), MAX_DEPTH>, t_max: f32| loop {
+            let entry = stack.pop()?;
+            if entry.1 <= beyond(t_max) {
+                return Some(entry);
+            }
+        };
+        let mut stack = heapless::Vec::new();
         let mut index = 0;
         loop {
             let Some(&[payload, link]) = self.nodes.get(index as usize) else { return };
             if let Some(view) = views.get(link as usize & 3) {
                 // An inner node: the child on the ray's side first.
-                let (left, right) = (index + 1, link >> 2);
-                let (near, far) = if view.entry.is_sign_negative() { (right, left) } else { (left, right) };
+                let (left, right) = (index + 1, link >> 4);
+                let descended = view.entry.is_sign_negative();
+                let (near, far) = if descended { (right, left) } else { (left, right) };
                 let distance = f32::from_bits(payload) - view.origin;
                 let plane_entry = distance * view.entry;
                 let plane_exit = distance * view.exit + 2.0 * f32::MIN_POSITIVE;
-                if plane_entry > exit {
+                if link & 12 != 0 {
+                    // A cut: one child, on the side that is not empty.
+                    let passed = if (link & 8 != 0) != descended {
+                        exit = if plane_exit < exit { plane_exit } else { exit };
+                        plane_exit < enter
+                    } else {
+                        enter = if plane_entry > enter { plane_entry } else { enter };
+                        plane_entry > exit
+                    };
+                    index = left;
+                    if passed {
+                        let Some(entry) = pop(&mut stack, t_max) else { return };
+                        (index, enter, exit) = entry;
+                    }
+                } else if plane_entry > exit {
                     index = near;
                 } else if plane_exit < enter {
                     index = far;
@@ -96,19 +118,14 @@ impl<'a> InlinedTree<'a> {
                 continue;
             }
             // A leaf: a primitive, or references to some.
-            let count = link >> 2;
+            let count = link >> 4;
             for place in payload..payload + count {
                 let reference = self.references.get(place as usize / 2).map(|word| word >> (16 * (place % 2)) & 0xffff);
                 let Some(index) = (if count == 1 { Some(payload) } else { reference }) else { break };
                 t_max = test(index);
             }
-            // The nearest far child that begins before the best hit; no plane's parameter is NaN here.
-            (index, enter, exit) = loop {
-                let Some(entry) = stack.pop() else { return };
-                if entry.1 <= beyond(t_max) {
-                    break entry;
-                }
-            };
+            let Some(entry) = pop(&mut stack, t_max) else { return };
+            (index, enter, exit) = entry;
         }
     }
 }

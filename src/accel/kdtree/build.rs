@@ -13,7 +13,7 @@ use core::mem::size_of;
 
 use super::{
     HEADER_WORDS, MAX_DEPTH,
-    node::{Kind, MAX_LINK, Node},
+    node::{Kind, MAX_LINK, Node, Side},
     open::Header,
     options::{Options, Split},
     reference_bytes,
@@ -49,6 +49,13 @@ struct Task {
     budget: u32,
     /// Where in the stream the node stands whose right child it is.
     parent: u32,
+}
+
+impl Task {
+    /// The same, for a cell whose place nobody needs to be told.
+    const fn without_parent(self) -> Self {
+        Self { parent: NONE, ..self }
+    }
 }
 
 /// See [`KdTree::words`](super::KdTree::words).
@@ -262,8 +269,8 @@ impl<'w, 'p, P: Primitives + ?Sized> Builder<'w, 'p, P> {
         references.saturating_add(Node::WORDS as u32 * 2)
     }
 
-    /// Writes an inner node, distributes the items and leaves a task for the right child; the left child's task, or none
-    /// if the cell is to be a leaf.
+    /// Writes an inner node, distributes the items and leaves a task for the right child if both have items; the task of
+    /// the next node, or none if the cell is to be a leaf.
     fn divide(&mut self, task: &Task) -> Result<Option<Task>, BuildError> {
         self.top = task.top as usize;
         if task.count <= self.options.leaf_size || task.depth >= self.max_depth {
@@ -310,32 +317,45 @@ impl<'w, 'p, P: Primitives + ?Sized> Builder<'w, 'p, P> {
         let (left_count, right_count) = self.distribute(task, &plane, left, both);
 
         let (left_cell, right_cell) = task.cell.split(plane.axis, plane.position);
-        let weight = (most_left + most_right).max(1) as u64;
-        let share = (u64::from(excess) * most_left as u64 / weight) as u32;
-        let right = Task {
-            cell: right_cell,
-            // The right child's items end where the cell's did.
-            top: (task.top as usize - task.count as usize + right_count) as u32,
-            count: right_count as u32,
-            depth: task.depth + 1,
-            budget: self.leaf_size(most_right).saturating_add(excess - share),
-            parent: self.used as u32,
-        };
-        if let Some(place) = self.tasks.get_mut(self.task_count) {
-            *place = right;
-            self.task_count += 1;
-        }
-        self.node(Node::inner(plane.axis, plane.position))?;
-        self.depth = self.depth.max(task.depth + 1);
-        Ok(Some(Task {
+        let depth = task.depth + 1;
+        let mut left = Task {
             cell: left_cell,
             // The left child's items begin behind those of the right.
             top: (task.top as usize - left + left_count) as u32,
             count: left_count as u32,
-            depth: task.depth + 1,
-            budget: self.leaf_size(most_left) + share,
+            depth,
+            budget: task.budget.saturating_sub(Node::WORDS as u32 * 2),
             parent: NONE,
-        }))
+        };
+        let mut right = Task {
+            cell: right_cell,
+            // The right child's items end where the cell's did.
+            top: (task.top as usize - task.count as usize + right_count) as u32,
+            count: right_count as u32,
+            ..left
+        };
+        let node = Node::inner(plane.axis, plane.position);
+        let (node, next) = match (left_count, right_count) {
+            // Clipping has left nothing: an empty leaf takes the cell's place.
+            (0, 0) => return Ok(Some(Task { count: 0, ..*task }.without_parent())),
+            (0, _) => (node.cutting(Side::Left).linked_to(self.nodes + 1), right),
+            (_, 0) => (node.cutting(Side::Right).linked_to(self.nodes + 1), left),
+            _ => {
+                let weight = (most_left + most_right).max(1) as u64;
+                let share = (u64::from(excess) * most_left as u64 / weight) as u32;
+                left.budget = self.leaf_size(most_left).saturating_add(share);
+                right.budget = self.leaf_size(most_right).saturating_add(excess - share);
+                right.parent = self.used as u32;
+                if let Some(place) = self.tasks.get_mut(self.task_count) {
+                    *place = right;
+                    self.task_count += 1;
+                }
+                (node, left)
+            }
+        };
+        self.node(node)?;
+        self.depth = self.depth.max(depth);
+        Ok(Some(next))
     }
 
     /// Turns the items on both sides, which lie behind the `left` ones, into parts: the left ones on top of all, the right

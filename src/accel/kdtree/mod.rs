@@ -16,7 +16,7 @@ pub use open::{KdTreeError, Reason};
 pub use options::{Options, Split};
 pub use traverse::KdTraversal;
 
-use self::node::{Kind, Node};
+use self::node::{Kind, Node, Side};
 use super::{Accelerator, leaf::References};
 use crate::{
     arena::Arena,
@@ -80,7 +80,7 @@ impl<'a> KdTree<'a> {
     ///
     /// [`BuildError::Full`] if the arena is too small, [`BuildError::Bounds`] if a primitive has no valid bounds,
     /// [`BuildError::Budget`] if not even a single leaf fits into [`Options::max_bytes`], [`BuildError::TooMany`] above
-    /// 2^30 primitives. The arena is then as it was.
+    /// 2^28 primitives. The arena is then as it was.
     pub fn build<P: Primitives + ?Sized>(
         primitives: &P,
         arena: &mut Arena<'a>,
@@ -145,10 +145,16 @@ impl<'a> KdTree<'a> {
             let chance = if whole > 0.0 { cell.half_area() / whole } else { 1.0 };
             nodes += chance;
             next = match self.nodes.get(index as usize).map(|node| node.kind()) {
-                Some(Kind::Inner { axis, position, right }) => {
+                Some(Kind::Inner { axis, position, right, empty }) => {
                     let (left_cell, right_cell) = cell.split(axis, position);
-                    let _ = stack.push((right, right_cell));
-                    Some((index + 1, left_cell))
+                    match empty {
+                        None => {
+                            let _ = stack.push((right, right_cell));
+                            Some((index + 1, left_cell))
+                        }
+                        Some(Side::Left) => Some((index + 1, right_cell)),
+                        Some(Side::Right) => Some((index + 1, left_cell)),
+                    }
                 }
                 Some(Kind::Leaf { count, .. }) => {
                     tests += chance * count as f32;

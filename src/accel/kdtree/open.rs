@@ -122,12 +122,19 @@ impl<'a> KdTree<'a> {
                 return Err(error(Reason::Link));
             }
             match node.kind() {
-                Kind::Inner { position, right, .. } => {
+                Kind::Inner { position, right, empty, .. } => {
                     if !position.is_finite() {
                         return Err(error(Reason::Plane));
                     }
                     depth += 1;
-                    if depth > self.depth || pending.push((right, depth)).is_err() {
+                    if depth > self.depth {
+                        return Err(error(Reason::Depth));
+                    }
+                    // The only child of a cut is the next node.
+                    if empty.is_some() && right as usize != index + 1 {
+                        return Err(error(Reason::Link));
+                    }
+                    if empty.is_none() && pending.push((right, depth)).is_err() {
                         return Err(error(Reason::Depth));
                     }
                 }

@@ -86,13 +86,30 @@ impl<'a> KdTraversal<'a> {
             }
             // The child on the ray's side first.
             let view = &ray.views[axis as usize];
+            let descended = node.is_descended(ray.descending);
             let (left, right) = (cell.node + 1, node.number());
-            let (near, far) = if node.is_descended(ray.descending) { (right, left) } else { (left, right) };
+            let (near, far) = if descended { (right, left) } else { (left, right) };
             let distance = node.position() - view.origin;
             let entry = distance * view.entry;
             let exit = distance * view.exit + slack;
             // Written so that NaN, the ray in the plane, visits both.
-            if entry > cell.exit {
+            if node.is_cut() {
+                // One child: the cell shrinks to it, or the ray passes it by.
+                let passed = if node.is_empty_on_the_right() != descended {
+                    cell.exit = least(exit, cell.exit);
+                    exit < cell.enter
+                } else {
+                    cell.enter = greatest(entry, cell.enter);
+                    entry > cell.exit
+                };
+                cell.node = left;
+                if passed {
+                    match self.pop(end) {
+                        Some(next) => cell = next,
+                        None => return Step::Done,
+                    }
+                }
+            } else if entry > cell.exit {
                 cell.node = near;
             } else if exit < cell.enter {
                 cell.node = far;
