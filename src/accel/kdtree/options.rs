@@ -45,13 +45,13 @@ pub struct Options {
 }
 
 impl Options {
-    /// The fewest bytes that still make a tree: about 20 per triangle.
+    /// The fewest bytes that still make a tree worth its name: 10 to 20 per triangle.
     #[must_use]
     pub const fn small() -> Self {
         Self { intersection_cost: 0.33, bytes_per_primitive: 48, ..Self::balanced() }
     }
 
-    /// Nearly as fast as [`fast`](Self::fast) in less than half the bytes.
+    /// A tenth slower than [`fast`](Self::fast) in half the bytes: 12 to 25 per triangle.
     #[must_use]
     pub const fn balanced() -> Self {
         Self {
@@ -66,7 +66,7 @@ impl Options {
         }
     }
 
-    /// The least time per ray.
+    /// The least time per ray: 20 to 50 bytes per triangle.
     #[must_use]
     pub const fn fast() -> Self {
         Self { intersection_cost: 1.0, bytes_per_primitive: 200, ..Self::balanced() }
