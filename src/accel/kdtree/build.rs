@@ -1,23 +1,16 @@
 //! The builder: one skeleton, depth first, without recursion.
 //!
-//! The words it is given are used from both ends:
-//!
-//! ```text
-//! | header | stream: nodes, each leaf's references behind it → | free | ← items of pending cells | tasks |
-//! ```
-//!
-//! A cell's items lie on top of those of the cells that wait. Dividing it writes the right child's items in place, the
-//! left child's on top, and leaves a task for the right child. At the end the stream is sorted into nodes and references.
-
-use core::mem::size_of;
+//! Dividing a cell writes the right child's items in the place of its own, the left child's on top, and postpones the
+//! right child. At the end the stream is sorted into nodes and references.
 
 use super::{
-    HEADER_WORDS, MAX_DEPTH,
+    HEADER_WORDS,
     node::{Kind, MAX_LINK, Node, Side},
     open::Header,
     options::{Options, Split},
     reference_bytes,
     split::{Item, Place, Plane, SCRATCH_WORDS, choose},
+    stage::{ITEM_WORDS, NONE, Stage, TASKS_WORDS, Task, swap},
 };
 use crate::{
     arena::Full,
@@ -27,37 +20,6 @@ use crate::{
     primitives::{Primitives, bounds_of},
 };
 
-const ITEM_WORDS: usize = size_of::<Item>() / 4;
-const TASK_WORDS: usize = size_of::<Task>() / 4;
-
-/// Each level leaves at most one task behind.
-const TASKS: usize = MAX_DEPTH + 1;
-
-/// No node.
-const NONE: u32 = u32::MAX;
-
-/// A cell that waits to be divided.
-#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
-#[repr(C)]
-struct Task {
-    cell: Aabb,
-    /// Its first item, counted from the end of the items.
-    top: u32,
-    count: u32,
-    depth: u32,
-    /// Half-words that its subtree may take.
-    budget: u32,
-    /// Where in the stream the node stands whose right child it is.
-    parent: u32,
-}
-
-impl Task {
-    /// The same, for a cell whose place nobody needs to be told.
-    const fn without_parent(self) -> Self {
-        Self { parent: NONE, ..self }
-    }
-}
-
 /// See [`KdTree::words`](super::KdTree::words).
 pub(super) const fn words(primitives: usize, options: &Options) -> usize {
     // In the stream a reference takes a word, of which the budget may have counted half.
@@ -66,7 +28,7 @@ pub(super) const fn words(primitives: usize, options: &Options) -> usize {
     // Beside the stream stand first the items and what is sorted of them, then the references on their way behind the nodes.
     let sorted = primitives.saturating_mul(SCRATCH_WORDS);
     let items = most_items(primitives).saturating_mul(ITEM_WORDS).saturating_add(sorted);
-    (HEADER_WORDS + TASKS * TASK_WORDS + Node::WORDS).saturating_add(stream).saturating_add(if items > packed {
+    (HEADER_WORDS + TASKS_WORDS + Node::WORDS).saturating_add(stream).saturating_add(if items > packed {
         items
     } else {
         packed
@@ -128,15 +90,7 @@ struct Builder<'w, 'p, P: ?Sized> {
     /// Half-words per reference.
     reference_size: u32,
 
-    /// Stream and items.
-    words: &'w mut [u32],
-    tasks: &'w mut [Task],
-    task_count: usize,
-    /// Words of stream.
-    used: usize,
-    /// Items of pending cells, without those of the cell at hand.
-    top: usize,
-
+    stage: Stage<'w>,
     nodes: u32,
     references: u32,
     depth: u32,
@@ -147,12 +101,6 @@ struct Builder<'w, 'p, P: ?Sized> {
 
 impl<'w, 'p, P: Primitives + ?Sized> Builder<'w, 'p, P> {
     fn new(primitives: &'p P, words: &'w mut [u32], options: &'p Options, bounds: Aabb) -> Result<Self, Full> {
-        let available = words.len();
-        let items = primitives.len() as usize * ITEM_WORDS;
-        let at_least = HEADER_WORDS + TASKS * TASK_WORDS + Node::WORDS + items;
-        let full = Full { at_least, available };
-        let body = available.checked_sub(TASKS * TASK_WORDS).filter(|_| available >= at_least).ok_or(full)?;
-        let (words, tasks) = words.split_at_mut_checked(body).ok_or(full)?;
         let max_depth = options.depth(primitives.len());
         let reference_size = reference_bytes(primitives.len() as usize) as u32 / 2;
         Ok(Self {
@@ -161,11 +109,7 @@ impl<'w, 'p, P: Primitives + ?Sized> Builder<'w, 'p, P> {
             bounds,
             max_depth,
             reference_size,
-            words,
-            tasks: bytemuck::try_cast_slice_mut(tasks).map_err(|_| full)?,
-            task_count: 0,
-            used: HEADER_WORDS,
-            top: 0,
+            stage: Stage::new(words, primitives.len())?,
             nodes: 0,
             references: 0,
             depth: 0,
@@ -183,11 +127,10 @@ impl<'w, 'p, P: Primitives + ?Sized> Builder<'w, 'p, P> {
                 Some(left) => left,
                 None => {
                     self.leaf(&task)?;
-                    let Some(right) = self.task_count.checked_sub(1).and_then(|last| self.tasks.get(last)) else {
-                        break;
-                    };
-                    self.task_count -= 1;
-                    *right
+                    match self.stage.resume() {
+                        Some(right) => right,
+                        None => break,
+                    }
                 }
             };
         }
@@ -198,10 +141,10 @@ impl<'w, 'p, P: Primitives + ?Sized> Builder<'w, 'p, P> {
     /// The cell of all primitives.
     fn root(&mut self) -> Result<Task, Full> {
         let count = self.primitives.len();
-        self.top = count as usize;
-        self.reserve(0)?;
+        self.stage.top = count as usize;
+        self.stage.reserve(0)?;
         let primitives = self.primitives;
-        let (_, items) = self.parts();
+        let (_, items) = self.stage.parts();
         let first = items.len().saturating_sub(count as usize);
         for (primitive, item) in items.iter_mut().skip(first).enumerate() {
             let primitive = primitive as u32;
@@ -214,50 +157,10 @@ impl<'w, 'p, P: Primitives + ?Sized> Builder<'w, 'p, P> {
         Ok(Task { cell: self.bounds, top: count, count, depth: 0, budget, parent: NONE })
     }
 
-    /// The stream, and all that may hold items, those on top of the stack first.
-    fn parts(&mut self) -> (&mut [u32], &mut [Item]) {
-        let (stream, free) = self.words.split_at_mut_checked(self.used).unwrap_or_default();
-        let ragged = free.len() % ITEM_WORDS;
-        let items = free.split_at_mut_checked(ragged).map(|(_, items)| items).unwrap_or_default();
-        (stream, bytemuck::try_cast_slice_mut(items).unwrap_or_default())
-    }
-
-    /// The items of a cell, which are the topmost.
-    fn items(&mut self, task: &Task) -> &mut [Item] {
-        self.scratch(task).1
-    }
-
-    /// What is free above the items of a cell, and these.
-    fn scratch(&mut self, task: &Task) -> (&mut [u32], &mut [Item]) {
-        let first = self.words.len().saturating_sub(task.top as usize * ITEM_WORDS);
-        let (front, items) = self.words.split_at_mut_checked(first).unwrap_or_default();
-        let free = front.get_mut(self.used..).unwrap_or_default();
-        let items = items.get_mut(..task.count as usize * ITEM_WORDS).unwrap_or_default();
-        (free, bytemuck::try_cast_slice_mut(items).unwrap_or_default())
-    }
-
-    /// Makes sure that `words` can be added to the stream.
-    fn reserve(&self, words: usize) -> Result<(), Full> {
-        let needed = self.used + words + self.top * ITEM_WORDS;
-        if needed <= self.words.len() {
-            return Ok(());
-        }
-        let tasks = TASKS * TASK_WORDS;
-        Err(Full { at_least: needed + tasks, available: self.words.len() + tasks })
-    }
-
-    /// Adds words to the stream; the room was reserved.
-    fn append(&mut self, word: u32) {
-        if let Some(place) = self.words.get_mut(self.used) {
-            *place = word;
-            self.used += 1;
-        }
-    }
-
     /// Tells the parent of a right child its number.
     fn link(&mut self, task: &Task) {
         let number = self.nodes;
-        let place = self.words.get_mut(task.parent as usize..).and_then(|stream| stream.first_chunk_mut::<2>());
+        let place = self.stage.words.get_mut(task.parent as usize..).and_then(|stream| stream.first_chunk_mut::<2>());
         if let Some(words) = place {
             *words = Node::from_words(*words).linked_to(number).to_words();
         }
@@ -272,13 +175,13 @@ impl<'w, 'p, P: Primitives + ?Sized> Builder<'w, 'p, P> {
     /// Writes an inner node, distributes the items and leaves a task for the right child if both have items; the task of
     /// the next node, or none if the cell is to be a leaf.
     fn divide(&mut self, task: &Task) -> Result<Option<Task>, BuildError> {
-        self.top = task.top as usize;
+        self.stage.top = task.top as usize;
         if task.count <= self.options.leaf_size || task.depth >= self.max_depth {
             return Ok(None);
         }
         let options = self.options;
-        self.reserve(task.count as usize * SCRATCH_WORDS)?;
-        let (scratch, items) = self.scratch(task);
+        self.stage.reserve(task.count as usize * SCRATCH_WORDS)?;
+        let (scratch, items) = self.stage.scratch(task);
         let Some(plane) = choose(items, &task.cell, options, scratch) else { return Ok(None) };
 
         // Sort: left, both, right.
@@ -312,8 +215,8 @@ impl<'w, 'p, P: Primitives + ?Sized> Builder<'w, 'p, P> {
         };
 
         // The copies of those on both sides lie on top of the cell's items.
-        self.top = task.top as usize + both;
-        self.reserve(Node::WORDS)?;
+        self.stage.top = task.top as usize + both;
+        self.stage.reserve(Node::WORDS)?;
         let (left_count, right_count) = self.distribute(task, &plane, left, both);
 
         let (left_cell, right_cell) = task.cell.split(plane.axis, plane.position);
@@ -345,11 +248,8 @@ impl<'w, 'p, P: Primitives + ?Sized> Builder<'w, 'p, P> {
                 let share = (u64::from(excess) * most_left as u64 / weight) as u32;
                 left.budget = self.leaf_size(most_left).saturating_add(share);
                 right.budget = self.leaf_size(most_right).saturating_add(excess - share);
-                right.parent = self.used as u32;
-                if let Some(place) = self.tasks.get_mut(self.task_count) {
-                    *place = right;
-                    self.task_count += 1;
-                }
+                right.parent = self.stage.used as u32;
+                self.stage.postpone(right);
                 (node, left)
             }
         };
@@ -371,7 +271,7 @@ impl<'w, 'p, P: Primitives + ?Sized> Builder<'w, 'p, P> {
             };
             (!clipped.is_empty()).then_some(Item { bounds: clipped, ..*item })
         };
-        let (_, items) = self.parts();
+        let (_, items) = self.stage.parts();
         let first = items.len().saturating_sub(task.top as usize);
         let right_only = task.count as usize - left - both;
         let (mut left_count, mut right_count) = (left, right_only);
@@ -395,10 +295,10 @@ impl<'w, 'p, P: Primitives + ?Sized> Builder<'w, 'p, P> {
 
     /// Adds a node to the stream.
     fn node(&mut self, node: Node) -> Result<(), BuildError> {
-        if self.nodes >= MAX_LINK || self.used >= NONE as usize {
+        if self.nodes >= MAX_LINK || self.stage.used >= NONE as usize {
             return Err(BuildError::TooMany { limit: MAX_LINK });
         }
-        node.to_words().into_iter().for_each(|word| self.append(word));
+        node.to_words().into_iter().for_each(|word| self.stage.append(word));
         self.nodes += 1;
         Ok(())
     }
@@ -409,23 +309,23 @@ impl<'w, 'p, P: Primitives + ?Sized> Builder<'w, 'p, P> {
         let size = self.leaf_size(count as usize);
         self.spare = task.budget.saturating_sub(size);
         if count <= 1 {
-            let primitive = self.items(task).first().map_or(0, |item| item.primitive);
-            self.top = (task.top - count) as usize;
-            self.reserve(Node::WORDS)?;
+            let primitive = self.stage.items(task).first().map_or(0, |item| item.primitive);
+            self.stage.top = (task.top - count) as usize;
+            self.stage.reserve(Node::WORDS)?;
             return self.node(Node::leaf(primitive, count));
         }
         let first = self.references;
         self.references = first.checked_add(count).ok_or(BuildError::TooMany { limit: u32::MAX })?;
         // The node stands where an item was at the most; read before they are overwritten.
-        self.top = task.top as usize;
-        self.reserve(Node::WORDS + count as usize)?;
+        self.stage.top = task.top as usize;
+        self.stage.reserve(Node::WORDS + count as usize)?;
         self.node(Node::leaf(first, count))?;
         for index in 0..count {
             let rest = Task { top: task.top - index, count: 1, ..*task };
-            let primitive = self.items(&rest).first().map_or(0, |item| item.primitive);
-            self.append(primitive);
+            let primitive = self.stage.items(&rest).first().map_or(0, |item| item.primitive);
+            self.stage.append(primitive);
         }
-        self.top = (task.top - count) as usize;
+        self.stage.top = (task.top - count) as usize;
         Ok(())
     }
 
@@ -433,39 +333,39 @@ impl<'w, 'p, P: Primitives + ?Sized> Builder<'w, 'p, P> {
     fn finish(&mut self) -> Result<usize, BuildError> {
         let narrow = self.reference_size == 1;
         let packed = if narrow { self.references.div_ceil(2) } else { self.references } as usize;
-        self.top = 0;
-        self.reserve(packed)?;
+        self.stage.top = 0;
+        self.stage.reserve(packed)?;
         // References to the far end, nodes together: these move forward only.
-        let shelf = self.words.len() - packed;
-        if let Some(shelf) = self.words.get_mut(shelf..) {
+        let shelf = self.stage.words.len() - packed;
+        if let Some(shelf) = self.stage.words.get_mut(shelf..) {
             shelf.fill(0);
         }
         let (mut read, mut write, mut reference) = (HEADER_WORDS, HEADER_WORDS, 0);
         for _ in 0..self.nodes {
-            let node = [self.word(read), self.word(read + 1)];
+            let node = [self.stage.word(read), self.stage.word(read + 1)];
             read += Node::WORDS;
             for word in node {
-                self.set(write, word);
+                self.stage.set(write, word);
                 write += 1;
             }
             if let Kind::Leaf { count, .. } = Node::from_words(node).kind()
                 && count > 1
             {
                 for _ in 0..count {
-                    let primitive = self.word(read);
+                    let primitive = self.stage.word(read);
                     read += 1;
                     if narrow {
                         let place = shelf + reference / 2;
-                        self.set(place, self.word(place) | primitive << (16 * (reference % 2)));
+                        self.stage.set(place, self.stage.word(place) | primitive << (16 * (reference % 2)));
                     } else {
-                        self.set(shelf + reference, primitive);
+                        self.stage.set(shelf + reference, primitive);
                     }
                     reference += 1;
                 }
             }
         }
         for index in 0..packed {
-            self.set(write + index, self.word(shelf + index));
+            self.stage.set(write + index, self.stage.word(shelf + index));
         }
         let header = Header {
             nodes: self.nodes,
@@ -475,32 +375,8 @@ impl<'w, 'p, P: Primitives + ?Sized> Builder<'w, 'p, P> {
             bounds: self.bounds,
         };
         for (index, word) in header.to_words().into_iter().enumerate() {
-            self.set(index, word);
+            self.stage.set(index, word);
         }
         Ok(write + packed)
-    }
-
-    fn word(&self, index: usize) -> u32 {
-        self.words.get(index).copied().unwrap_or(0)
-    }
-
-    fn set(&mut self, index: usize, word: u32) {
-        if let Some(place) = self.words.get_mut(index) {
-            *place = word;
-        }
-    }
-}
-
-/// As `slice::swap`, but without a panic for the linker to keep.
-fn swap(items: &mut [Item], i: usize, j: usize) {
-    if i != j
-        && let (Some(&a), Some(&b)) = (items.get(i), items.get(j))
-    {
-        if let Some(place) = items.get_mut(i) {
-            *place = b;
-        }
-        if let Some(place) = items.get_mut(j) {
-            *place = a;
-        }
     }
 }

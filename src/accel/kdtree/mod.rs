@@ -10,6 +10,7 @@ mod open;
 mod options;
 mod sort;
 mod split;
+mod stage;
 mod traverse;
 
 pub use open::{KdTreeError, Reason};
