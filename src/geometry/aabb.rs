@@ -135,6 +135,13 @@ impl Aabb {
     }
 }
 
+#[cfg(feature = "defmt")]
+impl defmt::Format for Aabb {
+    fn format(&self, f: defmt::Formatter<'_>) {
+        defmt::write!(f, "{} to {}", self.min.to_array(), self.max.to_array());
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

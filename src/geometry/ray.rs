@@ -90,6 +90,14 @@ impl Ray {
     }
 }
 
+#[cfg(feature = "defmt")]
+impl defmt::Format for Ray {
+    fn format(&self, f: defmt::Formatter<'_>) {
+        let (origin, direction) = (self.origin.to_array(), self.direction.to_array());
+        defmt::write!(f, "{} + t * {}, t in {}..={}, mask {:#x}", origin, direction, self.t_min, self.t_max, self.mask);
+    }
+}
+
 /// A ray as one axis sees it: the parameter of the plane at `p` is `(p - origin) * entry`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct AxisView {

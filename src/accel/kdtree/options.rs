@@ -22,6 +22,7 @@ pub enum Split {
 /// # let _ = (options, tight);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Options {
     /// How a cell is divided.
     pub split: Split,
