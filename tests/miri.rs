@@ -15,10 +15,10 @@ use hitscan::{
 #[test]
 fn built_baked_opened_and_walked() {
     let mut random = Random::new(4);
-    let mut memory = [0; 4000];
+    let mut memory = [0; 2500];
     for split in [Split::Midpoint, Split::Median, Split::Sah] {
         let family = random.below(FAMILIES);
-        let (vertices, triangles) = adversarial_mesh(&mut random, family, 12);
+        let (vertices, triangles) = adversarial_mesh(&mut random, family, 8);
         let mesh = Mesh::new(&vertices, &triangles[..]).unwrap();
         let mut arena = Arena::new(&mut memory);
         let options = Options { split, ..Options::fast() };
@@ -32,7 +32,7 @@ fn built_baked_opened_and_walked() {
         }
         let scene: Scene<KdTree, Mesh> = Asset::from_words(&words).unwrap().scene().unwrap();
         let list = Scene::new(List::new(&mesh).unwrap(), mesh).unwrap();
-        for _ in 0..20 {
+        for _ in 0..6 {
             let ray = adversarial_ray(&mut random, family, &vertices);
             assert_eq!(scene.closest_hit(&ray), list.closest_hit(&ray));
             assert!(scene.hits(&ray).eq(list.hits(&ray)));
