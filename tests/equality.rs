@@ -30,7 +30,7 @@ fn options(random: &mut Random) -> Options {
 fn kd_trees_answer_as_the_list() {
     let mut random = Random::new(1);
     let mut memory = vec![0; 1 << 16];
-    let (mut cast, mut hits) = (0, 0);
+    let (mut cast, mut hits, mut nodes, mut scenes) = (0, 0, 0, 0);
     while cast < rays() {
         let family = random.below(FAMILIES);
         let (vertices, triangles) = adversarial_mesh(&mut random, family, 48);
@@ -41,6 +41,8 @@ fn kd_trees_answer_as_the_list() {
             Ok(tree) => tree,
             Err(error) => panic!("{error}: {options:?}"),
         };
+        scenes += 1;
+        nodes += tree.node_count();
         let tree = Scene::new(KdTree::open(tree.as_words()).unwrap(), &mesh).unwrap();
         for _ in 0..240 {
             let ray = adversarial_ray(&mut random, family, &vertices);
@@ -57,4 +59,6 @@ fn kd_trees_answer_as_the_list() {
         }
     }
     assert!(hits * 4 > cast, "{hits} of {cast}");
+    // Single leaves would be equal, too.
+    assert!(scenes >= cast / 240 && nodes > scenes * 10, "{nodes} nodes in {scenes} scenes");
 }
