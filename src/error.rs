@@ -3,7 +3,7 @@
 use core::fmt;
 
 use crate::{
-    accel::kdtree::KdTreeError,
+    accel::Malformed,
     arena::Full,
     asset::AssetError,
     geometry::Singular,
@@ -98,8 +98,8 @@ any_of! {
     Mismatch(Mismatch),
     /// An asset.
     Asset(AssetError),
-    /// The words of a kD-tree.
-    KdTree(KdTreeError),
+    /// The words of a structure.
+    Malformed(Malformed),
     /// A transform.
     Transform(Singular),
 }

@@ -7,11 +7,12 @@ mod common;
 use common::{Random, adversarial_mesh, adversarial_ray, point};
 use hitscan::{
     Error, KdTree, Mesh, Ray, Scene,
+    accel::Reason,
     asset::{Asset, AssetError, Kind},
     bake::{self, Baker},
     geometry::Sphere,
     glam::Vec3,
-    kdtree::{Options, Reason},
+    kdtree::Options,
     primitives::Spheres,
     query::Progress,
     render::{Material, Materials, Numbers},

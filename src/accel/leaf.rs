@@ -15,8 +15,8 @@ pub(crate) struct References<'a> {
 }
 
 impl<'a> References<'a> {
-    /// None.
-    pub(crate) const NOTHING: Self = Self::wide(&[]);
+    /// Each reference is its own number: for primitives that stand in the order of the leaves.
+    pub(crate) const IDENTITY: Self = Self::wide(&[]);
 
     /// Two per word.
     pub(crate) const fn narrow(words: &'a [u32]) -> Self {
@@ -29,10 +29,14 @@ impl<'a> References<'a> {
         Self { words, halves: 0 }
     }
 
+    /// The number behind a reference.
     #[inline(always)]
-    pub(crate) fn get(&self, index: u32) -> Option<u32> {
-        let word = self.words.get((index >> self.halves) as usize)?;
-        Some(word >> (16 * (index & self.halves)) & u32::MAX >> (16 * self.halves))
+    pub(crate) fn get(&self, index: u32) -> u32 {
+        match self.words.get((index >> self.halves) as usize) {
+            Some(word) => word >> (16 * (index & self.halves)) & u32::MAX >> (16 * self.halves),
+            // Checked when opened: only of the identity there are no words.
+            None => index,
+        }
     }
 }
 
@@ -54,6 +58,6 @@ impl Iterator for Leaf<'_> {
         }
         let number = self.references.get(self.next);
         self.next += 1;
-        number
+        Some(number)
     }
 }

@@ -1,6 +1,6 @@
 use core::ops::Range;
 
-use super::{Accelerator, Step, Traversal};
+use super::{Accelerator, Cell, Hierarchy, Inside, Step, Traversal};
 use crate::{
     error::BuildError,
     geometry::{Aabb, PreparedRay},
@@ -48,6 +48,20 @@ impl Accelerator for List {
 
     fn traverse(&self, _ray: &PreparedRay) -> ListTraversal {
         ListTraversal { next: 0, len: self.len }
+    }
+}
+
+/// One leaf.
+impl Hierarchy for List {
+    type Node = ();
+    type Leaf = Range<u32>;
+
+    fn root(&self) -> Option<Cell<()>> {
+        (self.len > 0).then_some(Cell { bounds: self.bounds, node: () })
+    }
+
+    fn open(&self, _cell: &Cell<()>) -> Inside<(), Range<u32>> {
+        Inside::Leaf(0..self.len)
     }
 }
 

@@ -3,13 +3,17 @@
 //! A structure is a small `Copy` view of words. It answers a ray with a [`Traversal`], a cursor that yields leaves; the
 //! queries of [`Scene`](crate::Scene) are short shells over it, written once for all structures.
 
+mod hierarchy;
 pub mod kdtree;
 mod leaf;
 mod list;
+mod malformed;
 
+pub use hierarchy::{Cell, Hierarchy, Inside, MAX_LEVELS};
 pub use kdtree::KdTree;
 pub use leaf::Leaf;
 pub use list::List;
+pub use malformed::{Malformed, Reason};
 
 use crate::geometry::{Aabb, PreparedRay};
 

@@ -15,6 +15,20 @@ pub enum Kind {
     Spheres,
     /// A kD-tree, as [`KdTree::as_words`](crate::KdTree::as_words) gives it.
     KdTree,
+    /// A kD-tree with nodes of 4 bytes.
+    CompactKdTree,
+    /// A uniform grid.
+    Grid,
+    /// An octree.
+    Octree,
+    /// A bounding volume hierarchy.
+    Bvh,
+    /// A dual-split tree.
+    DualSplit,
+    /// Numbers of primitives that stand in another order.
+    Numbers,
+    /// Placed scenes.
+    Instances,
     /// Materials: eight `f32` each.
     Materials,
     /// How many primitives, then a material number of 16 bits each.
@@ -24,12 +38,19 @@ pub enum Kind {
 }
 
 impl Kind {
-    const KNOWN: [Self; 7] = [
+    const KNOWN: [Self; 14] = [
         Self::Vertices,
         Self::NarrowIndices,
         Self::WideIndices,
         Self::Spheres,
         Self::KdTree,
+        Self::CompactKdTree,
+        Self::Grid,
+        Self::Octree,
+        Self::Bvh,
+        Self::DualSplit,
+        Self::Numbers,
+        Self::Instances,
         Self::Materials,
         Self::MaterialNumbers,
     ];
@@ -42,6 +63,13 @@ impl Kind {
             Self::WideIndices => u32::from_le_bytes(*b"idx4"),
             Self::Spheres => u32::from_le_bytes(*b"sphr"),
             Self::KdTree => u32::from_le_bytes(*b"kdtr"),
+            Self::CompactKdTree => u32::from_le_bytes(*b"kdt4"),
+            Self::Grid => u32::from_le_bytes(*b"grid"),
+            Self::Octree => u32::from_le_bytes(*b"octr"),
+            Self::Bvh => u32::from_le_bytes(*b"bvh2"),
+            Self::DualSplit => u32::from_le_bytes(*b"dust"),
+            Self::Numbers => u32::from_le_bytes(*b"nmbr"),
+            Self::Instances => u32::from_le_bytes(*b"inst"),
             Self::Materials => u32::from_le_bytes(*b"matl"),
             Self::MaterialNumbers => u32::from_le_bytes(*b"matn"),
             Self::Unknown(code) => code,
@@ -66,6 +94,13 @@ impl fmt::Display for Kind {
             Self::WideIndices => f.write_str("32-bit indices"),
             Self::Spheres => f.write_str("spheres"),
             Self::KdTree => f.write_str("kD-tree"),
+            Self::CompactKdTree => f.write_str("compact kD-tree"),
+            Self::Grid => f.write_str("grid"),
+            Self::Octree => f.write_str("octree"),
+            Self::Bvh => f.write_str("BVH"),
+            Self::DualSplit => f.write_str("dual-split tree"),
+            Self::Numbers => f.write_str("numbers"),
+            Self::Instances => f.write_str("instances"),
             Self::Materials => f.write_str("materials"),
             Self::MaterialNumbers => f.write_str("material numbers"),
             Self::Unknown(code) => write!(f, "unknown ({code:#010x})"),

@@ -5,6 +5,7 @@
 
 mod aabb;
 mod axis;
+mod lattice;
 mod ray;
 mod sphere;
 mod transform;
@@ -12,6 +13,7 @@ mod triangle;
 
 pub use aabb::Aabb;
 pub use axis::Axis;
+pub use lattice::Lattice;
 pub use ray::{PreparedRay, Ray};
 pub(crate) use ray::{beyond, slack};
 pub use sphere::Sphere;

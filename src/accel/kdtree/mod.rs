@@ -13,12 +13,11 @@ mod split;
 mod stage;
 mod traverse;
 
-pub use open::{KdTreeError, Reason};
 pub use options::{Options, Split};
 pub use traverse::KdTraversal;
 
 use self::node::{Kind, Node, Side};
-use super::{Accelerator, leaf::References};
+use super::{Accelerator, Cell, Hierarchy, Inside, Leaf, leaf::References};
 use crate::{
     arena::Arena,
     asset::{Asset, Stored},
@@ -102,7 +101,7 @@ impl<'a> KdTree<'a> {
     const NOTHING: Self = Self {
         words: &[],
         nodes: &[],
-        references: References::NOTHING,
+        references: References::IDENTITY,
         reference_count: 0,
         primitives: 0,
         depth: 0,
@@ -182,6 +181,29 @@ impl<'a> Accelerator for KdTree<'a> {
     #[inline]
     fn traverse(&self, ray: &PreparedRay) -> KdTraversal<'a> {
         KdTraversal::new(self, ray)
+    }
+}
+
+impl<'a> Hierarchy for KdTree<'a> {
+    type Node = u32;
+    type Leaf = Leaf<'a>;
+
+    fn root(&self) -> Option<Cell<u32>> {
+        (self.primitives > 0).then_some(Cell { bounds: self.bounds, node: 0 })
+    }
+
+    fn open(&self, cell: &Cell<u32>) -> Inside<u32, Leaf<'a>> {
+        let Some(node) = self.nodes.get(cell.node as usize) else { return Inside::Cells([None; 2]) };
+        match node.kind() {
+            Kind::Inner { axis, position, right, empty } => {
+                let (below, above) = cell.bounds.split(axis, position);
+                let below = (empty != Some(Side::Left)).then_some(Cell { bounds: below, node: cell.node + 1 });
+                let above = (empty != Some(Side::Right)).then_some(Cell { bounds: above, node: right });
+                Inside::Cells([below, above])
+            }
+            Kind::Leaf { count: 1, .. } => Inside::Leaf(Leaf::of(References::wide(node.payload()), 0, 1)),
+            Kind::Leaf { first, count } => Inside::Leaf(Leaf::of(self.references, first, count)),
+        }
     }
 }
 

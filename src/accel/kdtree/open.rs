@@ -1,7 +1,5 @@
 //! Words into a tree: looked at once, so that nothing can fail later.
 
-use core::fmt;
-
 use glam::Vec3;
 
 use super::{
@@ -9,54 +7,11 @@ use super::{
     node::{Kind, Node},
     reference_bytes,
 };
-use crate::{accel::leaf::References, geometry::Aabb};
-
-/// Why words are not a kD-tree.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct KdTreeError {
-    /// The word at which it was found out.
-    pub word: usize,
-    /// What is wrong there.
-    pub reason: Reason,
-}
-
-/// What can be wrong with the words of a tree.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub enum Reason {
-    /// There are more or fewer words than the header says.
-    Length,
-    /// The bounds are not finite or not in order.
-    Bounds,
-    /// A plane is not finite.
-    Plane,
-    /// A node's right child is not the node after its left subtree.
-    Link,
-    /// The tree is deeper than it says, or than [`MAX_DEPTH`].
-    Depth,
-    /// A leaf's references are not those after the leaf before.
-    References,
-    /// A leaf names a primitive that does not exist.
-    Primitive,
-}
-
-impl fmt::Display for KdTreeError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let what = match self.reason {
-            Reason::Length => "its length is not what its header says",
-            Reason::Bounds => "its bounds are not finite or not in order",
-            Reason::Plane => "a plane is not finite",
-            Reason::Link => "a node's child is not where it must be",
-            Reason::Depth => "it is deeper than it says or than a walk's stack",
-            Reason::References => "a leaf's references are not where they must be",
-            Reason::Primitive => "a leaf names a primitive that does not exist",
-        };
-        write!(f, "not a kD-tree: at word {} {what}", self.word)
-    }
-}
-
-impl core::error::Error for KdTreeError {}
+use crate::{
+    accel::{Malformed, Reason, leaf::References},
+    asset,
+    geometry::Aabb,
+};
 
 /// The header as it stands in the words.
 pub(super) struct Header {
@@ -90,9 +45,9 @@ impl<'a> KdTree<'a> {
     ///
     /// # Errors
     ///
-    /// [`KdTreeError`] says what is wrong and at which word.
-    pub fn open(words: &'a [u32]) -> Result<Self, KdTreeError> {
-        let error = |word, reason| KdTreeError { word, reason };
+    /// [`Malformed`] says what is wrong and at which word.
+    pub fn open(words: &'a [u32]) -> Result<Self, Malformed> {
+        let error = |word, reason| Malformed { structure: asset::Kind::KdTree, word, reason };
         let tree = Self::view(words).ok_or(error(0, Reason::Length))?;
         let empty = tree.primitives == 0 && tree.bounds == Aabb::EMPTY;
         if !(tree.bounds.is_valid() || empty) {
@@ -103,7 +58,7 @@ impl<'a> KdTree<'a> {
         }
         tree.check_nodes()?;
         for index in 0..tree.reference_count {
-            if tree.references.get(index).is_none_or(|primitive| primitive >= tree.primitives) {
+            if tree.references.get(index) >= tree.primitives {
                 return Err(error(HEADER_WORDS + tree.nodes.len() * Node::WORDS, Reason::Primitive));
             }
         }
@@ -111,13 +66,14 @@ impl<'a> KdTree<'a> {
     }
 
     /// One pass in order: right children are the nodes after the left subtrees, so each node has exactly one parent.
-    fn check_nodes(&self) -> Result<(), KdTreeError> {
+    fn check_nodes(&self) -> Result<(), Malformed> {
         // Right children to come, with their depths.
         let mut pending: heapless::Vec<(u32, u32), MAX_DEPTH> = heapless::Vec::new();
         let (mut references, mut depth) = (0_u32, 0_u32);
         let mut ended = false;
         for (index, node) in self.nodes.iter().enumerate() {
-            let error = |reason| KdTreeError { word: HEADER_WORDS + index * Node::WORDS, reason };
+            let error =
+                |reason| Malformed { structure: asset::Kind::KdTree, word: HEADER_WORDS + index * Node::WORDS, reason };
             if ended {
                 return Err(error(Reason::Link));
             }
@@ -156,12 +112,12 @@ impl<'a> KdTree<'a> {
                 }
             }
         }
-        let end = KdTreeError { word: HEADER_WORDS, reason: Reason::Link };
+        let end = Malformed { structure: asset::Kind::KdTree, word: HEADER_WORDS, reason: Reason::Link };
         if !ended {
             return Err(end);
         }
         if references != self.reference_count {
-            return Err(KdTreeError { reason: Reason::References, ..end });
+            return Err(Malformed { reason: Reason::References, ..end });
         }
         Ok(())
     }
