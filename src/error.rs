@@ -7,7 +7,8 @@ use crate::{
     arena::Full,
     asset::AssetError,
     geometry::Singular,
-    primitives::{MeshError, SphereError},
+    instances::InstanceError,
+    primitives::{MeshError, OrderError, SphereError},
     scene::Mismatch,
 };
 
@@ -92,6 +93,8 @@ any_of! {
     Mesh(MeshError),
     /// Spheres.
     Sphere(SphereError),
+    /// The order of primitives.
+    Order(OrderError),
     /// A structure.
     Build(BuildError),
     /// A structure and primitives that do not belong together.
@@ -100,6 +103,8 @@ any_of! {
     Asset(AssetError),
     /// The words of a structure.
     Malformed(Malformed),
+    /// Placed scenes.
+    Instance(InstanceError),
     /// A transform.
     Transform(Singular),
 }

@@ -108,6 +108,7 @@ pub use arena::Arena;
 pub use error::Error;
 pub use geometry::{PreparedRay, Ray};
 pub use glam;
+pub use instances::{Instance, Instances};
 pub use primitives::{Hit, Mesh, Primitives, Span, from_fn};
 pub use scene::Scene;
 
@@ -121,6 +122,7 @@ pub mod primitives;
 
 pub mod accel;
 
+pub mod instances;
 pub mod query;
 pub mod scene;
 

@@ -192,7 +192,7 @@ impl<A: Accelerator, P: Primitives> Scene<A, P> {
     ) -> bool {
         for index in leaf {
             let mut from = collector.from();
-            while let Some(hit) = self.intersect(index, ray, Span::new(from, collector.until())) {
+            while let Some(hit) = self.intersect(index, ray, collector.span(from)) {
                 match collector.take(hit) {
                     Next::Primitive => break,
                     Next::Hit => from = Hit { primitive: hit.primitive.saturating_add(1), ..hit },

@@ -13,7 +13,8 @@ use super::{Aabb, Ray};
 /// assert_eq!(place.inverse().point(Vec3::new(1.0, 2.0, 0.0)), Vec3::Y);
 /// # Ok::<(), hitscan::geometry::Singular>(())
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
 pub struct Transform {
     linear: Mat3,
     inverse: Mat3,
@@ -83,6 +84,50 @@ impl Transform {
     #[must_use]
     pub fn ray(&self, ray: &Ray) -> Ray {
         Ray { origin: self.point(ray.origin), direction: self.vector(ray.direction), ..*ray }
+    }
+
+    /// Where a ray comes from: the one that [`ray`](Self::ray) would take here.
+    ///
+    /// The translation is taken off first: far from the origin, where a mapped translation would swamp it, the origin of
+    /// the ray keeps its digits (at 2 * 10^5 it is 0.02 against 5 * 10^-7 off).
+    #[must_use]
+    pub fn ray_back(&self, ray: &Ray) -> Ray {
+        let origin = self.inverse * (ray.origin - self.translation);
+        Ray { origin, direction: self.inverse * ray.direction, ..*ray }
+    }
+
+    /// Whether all of it is finite.
+    pub(crate) fn is_finite(&self) -> bool {
+        self.linear.is_finite() && self.inverse.is_finite() && self.translation.is_finite()
+    }
+
+    /// How far, per axis, a point of at most this magnitude may end from where it came from by [`ray_back`](Self::ray_back).
+    ///
+    /// An error in the last places of the inverse moves a point `q` by `|M| |M⁻¹| |M| |q|` times as much.
+    pub(crate) fn error(&self, magnitude: Vec3) -> Vec3 {
+        let grown = |m: &Mat3, v: Vec3| m.x_axis.abs() * v.x + m.y_axis.abs() * v.y + m.z_axis.abs() * v.z;
+        let placed = grown(&self.linear, magnitude);
+        (grown(&self.linear, grown(&self.inverse, placed)) + self.translation.abs()) * (16.0 / 16_777_216.0)
+    }
+
+    /// As [`bounds`](Self::bounds), but with room for the roundings here and in [`ray_back`](Self::ray_back).
+    pub(crate) fn padded_bounds(&self, aabb: &Aabb) -> Aabb {
+        let corner = Aabb::new(aabb.min.abs(), aabb.min.abs()).union(&Aabb::new(aabb.max.abs(), aabb.max.abs())).max;
+        let (moved, pad) = (self.bounds(aabb), self.error(corner));
+        let outward = |v: Vec3, f: fn(f32) -> f32| Vec3::new(f(v.x), f(v.y), f(v.z));
+        Aabb::new(outward(moved.min - pad, f32::next_down), outward(moved.max + pad, f32::next_up))
+    }
+
+    /// By how much the error of a point grows on its way through the map.
+    pub(crate) fn stretch(&self) -> f32 {
+        let sum = self.linear.x_axis.abs() + self.linear.y_axis.abs() + self.linear.z_axis.abs();
+        sum.max_element()
+    }
+
+    /// Where the origin goes.
+    #[must_use]
+    pub const fn translation(&self) -> Vec3 {
+        self.translation
     }
 
     /// A box around where a box goes, up to rounding. Arvo, *Transforming axis-aligned bounding boxes*, 1990.

@@ -42,49 +42,86 @@ impl Span {
     /// The same hits of a shape that is not certified: clamped to its bounds, none if the ray misses these (rule R5).
     #[inline]
     pub(crate) fn within(self, bounds: &Aabb, ray: &PreparedRay) -> Option<Self> {
-        bounds.interval(ray).map(|(enter, exit)| Self { enter, exit, ..self })
+        let (enter, exit) = bounds.interval(ray)?;
+        // Clamped to these bounds first, then to those around them: again a clamp, to what the second leaves of the first.
+        Some(Self { enter: self.clamp(enter), exit: self.clamp(exit), ..self })
+    }
+
+    /// The hits from `from` up to `until`, clamped as these are.
+    #[inline(always)]
+    pub(crate) const fn between(self, from: Hit, until: Hit) -> Self {
+        Self { from, until, ..self }
+    }
+
+    /// The least hit accepted.
+    #[inline(always)]
+    pub(crate) const fn from(&self) -> Hit {
+        self.from
+    }
+
+    /// The hit before which all are accepted.
+    #[inline(always)]
+    pub(crate) const fn until(&self) -> Hit {
+        self.until
     }
 
     /// The same hits for a collection whose number 0 is `base` here.
     #[inline]
     pub(crate) fn numbered_from(self, base: u32) -> Self {
         // Numbers before the collection's first or after its last decide ties as a whole.
-        let from = match self.from.primitive.checked_sub(base) {
-            Some(primitive) => Hit { primitive, ..self.from },
-            None => Hit { primitive: 0, ..self.from },
-        };
+        let from = Hit { primitive: self.from.primitive.saturating_sub(base), ..self.from };
         let until = Hit { primitive: self.until.primitive.saturating_sub(base), ..self.until };
         Self { from, until, ..self }
+    }
+
+    /// The same hits for the one primitive `index` whose number here is `number`.
+    #[inline]
+    pub(crate) fn renumbered(self, index: u32, number: u32) -> Self {
+        // Numbers decide ties only: there a limit lies before the primitive or behind it.
+        let around = |limit: Hit| {
+            let primitive = if number < limit.primitive { index.saturating_add(1) } else { 0 };
+            Hit { primitive, ..limit }
+        };
+        Self { from: around(self.from), until: around(self.until), ..self }
+    }
+
+    #[inline(always)]
+    fn clamp(&self, t: f32) -> f32 {
+        let t = if t < self.enter { self.enter } else { t };
+        if t > self.exit { self.exit } else { t }
     }
 
     /// The hit of `primitive` at `t` if the query accepts it; NaN never is.
     #[inline(always)]
     #[must_use]
     pub fn accept(&self, t: f32, primitive: u32) -> Option<Hit> {
-        let t = if t < self.enter { self.enter } else { t };
-        let t = if t > self.exit { self.exit } else { t };
-        let hit = Hit { t, primitive };
+        let hit = Hit { t: self.clamp(t), primitive };
         (!hit.precedes(&self.from) && hit.precedes(&self.until)).then_some(hit)
     }
 
-    /// The least parameter accepted: work on smaller ones is wasted.
+    /// The least parameter that may be accepted: work on smaller ones is wasted.
     #[inline(always)]
     #[must_use]
     pub const fn t_min(&self) -> f32 {
-        self.from.t
+        // What lies before the bounds is clamped to where they begin.
+        if self.from.t > self.enter { self.from.t } else { f32::MIN }
     }
 
-    /// The greatest parameter accepted: work on larger ones is wasted.
+    /// The greatest parameter that may be accepted: work on larger ones is wasted.
     #[inline(always)]
     #[must_use]
     pub const fn t_max(&self) -> f32 {
-        self.until.t
+        // What lies behind the bounds is clamped to where they end.
+        if self.until.t < self.exit { self.until.t } else { f32::MAX }
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use glam::Vec3;
+
     use super::*;
+    use crate::geometry::Ray;
 
     #[test]
     fn spans_are_closed_below_and_open_above() {
@@ -93,5 +130,32 @@ mod tests {
         assert!(span.accept(2.0, 2).is_some() && span.accept(2.0, 3).is_none());
         assert!(span.accept(f32::NAN, 0).is_none());
         assert!(span.accept(f32::INFINITY, 0).is_none());
+    }
+
+    #[test]
+    fn limits_are_not_those_of_what_is_clamped_into_them() {
+        let span = Span::new(Hit { t: 1.0, primitive: 0 }, Hit { t: 2.0, primitive: 0 });
+        let slab = |min: f32, max: f32| Aabb::new(Vec3::new(-1.0, -1.0, min), Vec3::new(1.0, 1.0, max));
+        let ray = Ray::new(Vec3::ZERO, Vec3::Z).prepare().unwrap();
+        let inside = span.within(&slab(0.5, 3.0), &ray).unwrap();
+        assert_eq!((inside.t_min(), inside.t_max()), (1.0, 2.0));
+        let around = span.within(&slab(1.0, 1.9), &ray).unwrap();
+        assert_eq!((around.t_min(), around.t_max()), (f32::MIN, f32::MAX));
+        // What is behind both is where the outer one ends.
+        let nested = around.within(&slab(0.0, 5.0), &ray).unwrap();
+        assert_eq!(nested.accept(4.0, 7), around.accept(4.0, 7));
+        assert!(nested.accept(4.0, 7).is_some_and(|hit| hit.t < 2.0));
+    }
+
+    #[test]
+    fn renumbered_ties_are_decided_by_the_callers_numbers() {
+        let span = Span::new(Hit { t: 1.0, primitive: 5 }, Hit { t: 2.0, primitive: 5 });
+        for number in 0..10 {
+            let (own, one) = (span.renumbered(3, number), |t| Hit { t, primitive: 3 });
+            for t in [0.5, 1.0, 1.5, 2.0, 2.5] {
+                let accepted = own.accept(t, 3) == Some(one(t));
+                assert_eq!(accepted, span.accept(t, number).is_some(), "{t} {number}");
+            }
+        }
     }
 }

@@ -7,12 +7,14 @@ mod from_fn;
 mod hit;
 mod mesh;
 mod pair;
+mod reordered;
 mod spheres;
 mod surface;
 
 pub use from_fn::{FromFn, from_fn};
 pub use hit::{Hit, Span};
 pub use mesh::{Indices, Mesh, MeshError, Sides};
+pub use reordered::{Order, OrderError, Renumbering, Reordered};
 pub use spheres::{SphereError, Spheres};
 pub use surface::Surface;
 pub(crate) use surface::unit;
@@ -54,6 +56,12 @@ use crate::geometry::{Aabb, PreparedRay, Ray};
 pub trait Primitives {
     /// How many there are; their indices are below this.
     fn len(&self) -> u32;
+
+    /// One above the greatest number that a hit can carry; more than [`len`](Self::len) where a shape is made of many, as
+    /// a placed scene is.
+    fn numbers(&self) -> u32 {
+        self.len()
+    }
 
     /// A box around the shape `index`, in coordinates of at most [`MAX_COORDINATE`](crate::geometry::MAX_COORDINATE).
     ///
@@ -103,6 +111,10 @@ impl<P: Primitives + ?Sized> Primitives for &P {
     #[inline(always)]
     fn len(&self) -> u32 {
         (**self).len()
+    }
+    #[inline(always)]
+    fn numbers(&self) -> u32 {
+        (**self).numbers()
     }
     #[inline(always)]
     fn bounds(&self, index: u32) -> Aabb {

@@ -23,6 +23,10 @@ impl<A: Primitives, B: Primitives> Primitives for (A, B) {
         self.0.len().saturating_add(self.1.len())
     }
 
+    fn numbers(&self) -> u32 {
+        self.0.numbers().saturating_add(self.1.numbers())
+    }
+
     fn bounds(&self, index: u32) -> Aabb {
         match index.checked_sub(self.0.len()) {
             None => self.0.bounds(index),
@@ -35,7 +39,7 @@ impl<A: Primitives, B: Primitives> Primitives for (A, B) {
         match index.checked_sub(self.0.len()) {
             None => self.0.intersect(index, ray, span),
             Some(second) => {
-                let base = self.0.len();
+                let base = self.0.numbers();
                 let hit = self.1.intersect(second, ray, &span.numbered_from(base))?;
                 Some(Hit { primitive: hit.primitive.saturating_add(base), ..hit })
             }
@@ -43,7 +47,7 @@ impl<A: Primitives, B: Primitives> Primitives for (A, B) {
     }
 
     fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
-        match hit.primitive.checked_sub(self.0.len()) {
+        match hit.primitive.checked_sub(self.0.numbers()) {
             None => self.0.surface(ray, hit),
             Some(primitive) => self.1.surface(ray, &Hit { primitive, ..*hit }),
         }

@@ -1,4 +1,7 @@
-use crate::{geometry::PreparedRay, primitives::Hit};
+use crate::{
+    geometry::PreparedRay,
+    primitives::{Hit, Span},
+};
 
 /// What to look at after a hit.
 pub(crate) enum Next {
@@ -17,6 +20,12 @@ pub(crate) trait Collector {
 
     /// The hit before which all are wanted; it never moves back.
     fn until(&self) -> Hit;
+
+    /// The hits wanted of those not before `from`.
+    #[inline(always)]
+    fn span(&self, from: Hit) -> Span {
+        Span::new(from, self.until())
+    }
 
     /// Takes a hit between the two, in no particular order and some of them repeatedly.
     fn take(&mut self, hit: Hit) -> Next;
@@ -64,6 +73,43 @@ impl Collector for Closest {
     #[inline(always)]
     fn take(&mut self, hit: Hit) -> Next {
         self.best = hit;
+        Next::Primitive
+    }
+}
+
+/// Keeps the least hit of those that a query further up would accept, clamped as it wants.
+pub(crate) struct Inner {
+    span: Span,
+    found: bool,
+}
+
+impl Inner {
+    pub(crate) const fn new(span: Span) -> Self {
+        Self { span, found: false }
+    }
+
+    pub(crate) fn hit(&self) -> Option<Hit> {
+        self.found.then_some(self.span.until())
+    }
+}
+
+impl Collector for Inner {
+    fn from(&self) -> Hit {
+        self.span.from()
+    }
+
+    /// As far as anything can count, which is farther than the best hit if what lies behind it is clamped to it.
+    fn until(&self) -> Hit {
+        Hit { t: self.span.t_max(), ..self.span.until() }
+    }
+
+    fn span(&self, from: Hit) -> Span {
+        self.span.between(from, self.span.until())
+    }
+
+    fn take(&mut self, hit: Hit) -> Next {
+        self.span = self.span.between(self.span.from(), hit);
+        self.found = true;
         Next::Primitive
     }
 }
@@ -179,6 +225,11 @@ impl<C: Collector, F: FnMut(&Hit) -> bool> Collector for Where<C, F> {
     #[inline(always)]
     fn until(&self) -> Hit {
         self.inner.until()
+    }
+
+    #[inline(always)]
+    fn span(&self, from: Hit) -> Span {
+        self.inner.span(from)
     }
 
     #[inline(always)]

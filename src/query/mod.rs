@@ -4,6 +4,6 @@ mod collector;
 mod hits;
 mod paused;
 
-pub(crate) use collector::{Any, Closest, Collector, Nearest, Next, Where, end_of, start_of};
+pub(crate) use collector::{Any, Closest, Collector, Inner, Nearest, Next, Where, end_of, start_of};
 pub use hits::Hits;
 pub use paused::{PausedQuery, Progress};
