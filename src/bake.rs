@@ -3,37 +3,38 @@
 use alloc::{vec, vec::Vec};
 
 use crate::{
-    accel::kdtree::{KdTree, Options},
+    accel::{Plan, Structure},
     arena::{Arena, Full},
     asset::{ALIGNMENT, BYTE_ORDER, CHECKSUM_WORD, ENTRY_WORDS, HEADER_WORDS, Kind, MAGIC, VERSION, checksum},
     error::BuildError,
     geometry::Sphere,
+    instances::Instance,
     primitives::{Indices, Mesh, Primitives},
     render::{Material, Numbers},
 };
 
-/// Builds a kD-tree in as much memory as that takes; its words are for [`KdTree::open`] or [`Baker::kd_tree`].
+/// Builds a structure in as much memory as that takes; its words are for its `open`, or for [`Baker::structure`].
 ///
 /// ```
-/// use hitscan::{KdTree, Mesh, bake, glam::Vec3, kdtree::Options};
+/// use hitscan::{KdTree, Mesh, accel::Plan, bake, glam::Vec3, kdtree::Options};
 /// let vertices = [Vec3::ZERO, Vec3::X, Vec3::Y];
 /// let mesh = Mesh::new(&vertices, &[[0_u16, 1, 2]])?;
-/// let words = bake::kd_tree(&mesh, &Options::fast())?;
+/// let words = bake::build(&mesh, &Plan::KdTree(Options::fast()))?;
 /// assert_eq!(KdTree::open(&words)?.node_count(), 1);
 /// # Ok::<(), hitscan::Error>(())
 /// ```
 ///
 /// # Errors
 ///
-/// Those of [`KdTree::build`], except that memory does not run out.
-pub fn kd_tree<P: Primitives + ?Sized>(primitives: &P, options: &Options) -> Result<Vec<u32>, BuildError> {
-    let most = KdTree::words(primitives.len() as usize, options);
+/// Those of [`Structure::build`], except that memory does not run out.
+pub fn build<P: Primitives + ?Sized>(primitives: &P, plan: &Plan) -> Result<Vec<u32>, BuildError> {
+    let most = plan.words(primitives.len() as usize);
     // Usually a fraction of what always suffices is enough, and untouched memory would still be cleared.
     let mut size = most.min(4096 + primitives.len() as usize * 24);
     loop {
         let mut memory = vec![0; size];
-        let used = match KdTree::build(primitives, &mut Arena::new(&mut memory), options) {
-            Ok(tree) => tree.as_words().len(),
+        let used = match Structure::build(primitives, &mut Arena::new(&mut memory), plan) {
+            Ok(structure) => structure.as_words().len(),
             Err(BuildError::Full(Full { at_least, .. })) if size < most => {
                 size = (size * 2).max(at_least).min(most);
                 continue;
@@ -81,10 +82,47 @@ impl Baker {
         self.section(Kind::Spheres, words)
     }
 
-    /// The same with a kD-tree.
+    /// The same with a structure; a list needs no section.
     #[must_use]
-    pub fn kd_tree(self, tree: &KdTree<'_>) -> Self {
-        self.section(Kind::KdTree, tree.as_words().to_vec())
+    pub fn structure<'a>(self, structure: impl Into<Structure<'a>>) -> Self {
+        let structure = structure.into();
+        match structure.kind() {
+            Some(kind) => self.section(kind, structure.as_words().to_vec()),
+            None => self,
+        }
+    }
+
+    /// The same with instances, as [`Instances::place`](crate::Instances::place) numbered them.
+    #[must_use]
+    pub fn instances(self, placed: &[Instance]) -> Self {
+        self.section(Kind::Instances, bytemuck::cast_slice(placed).to_vec())
+    }
+
+    /// The same with a whole asset as a part: a scene to be placed.
+    #[must_use]
+    pub fn part(self, asset: Self) -> Self {
+        self.section(Kind::Part, asset.finish())
+    }
+
+    /// The same with the numbers that reordered primitives had: at each place stands the primitive `numbers[place]`.
+    #[must_use]
+    pub fn numbers(self, numbers: &[u32]) -> Self {
+        let mut places = vec![0; numbers.len()];
+        for (place, &number) in numbers.iter().enumerate() {
+            if let Some(slot) = places.get_mut(number as usize) {
+                *slot = place as u32;
+            }
+        }
+        let count = numbers.len() as u32;
+        let mut words = vec![count];
+        for list in [numbers, &places] {
+            if count > 1 << 16 {
+                words.extend(list);
+            } else {
+                words.extend(halves(list));
+            }
+        }
+        self.section(Kind::Numbers, words)
     }
 
     /// The same with materials.
@@ -136,6 +174,10 @@ impl Baker {
 /// A count and as many numbers of 16 bits, two per word.
 fn counted_halves(count: u32, numbers: impl Iterator<Item = u32>) -> Vec<u32> {
     let numbers: Vec<u32> = numbers.collect();
-    let pairs = numbers.chunks(2).map(|pair| pair[0] | pair.get(1).map_or(0, |high| high << 16));
-    core::iter::once(count).chain(pairs).collect()
+    core::iter::once(count).chain(halves(&numbers)).collect()
+}
+
+/// Numbers of 16 bits, two per word.
+fn halves(numbers: &[u32]) -> impl Iterator<Item = u32> {
+    numbers.chunks(2).map(|pair| pair[0] | pair.get(1).map_or(0, |high| high << 16))
 }

@@ -7,7 +7,7 @@ mod common;
 use common::{Random, adversarial_mesh, adversarial_ray, point};
 use hitscan::{
     Error, KdTree, Mesh, Ray, Scene,
-    accel::Reason,
+    accel::{Plan, Reason},
     asset::{Asset, AssetError, Kind},
     bake::{self, Baker},
     geometry::Sphere,
@@ -36,8 +36,8 @@ fn soup(seed: u64, most: usize) -> (Vec<Vec3>, Vec<[u32; 3]>) {
 fn baked(seed: u64, most: usize, options: &Options) -> Vec<u32> {
     let (vertices, triangles) = soup(seed, most);
     let mesh = Mesh::new(&vertices, &triangles[..]).unwrap();
-    let tree = bake::kd_tree(&mesh, options).unwrap();
-    Baker::new().mesh(&mesh).kd_tree(&KdTree::open(&tree).unwrap()).finish()
+    let tree = bake::build(&mesh, &Plan::KdTree(*options)).unwrap();
+    Baker::new().mesh(&mesh).structure(KdTree::open(&tree).unwrap()).finish()
 }
 
 /// Opens everything, and if it opens, walks it: the walk must end within the nodes.
@@ -59,11 +59,11 @@ fn what_is_baked_is_read_back() {
     let mesh = Mesh::new(&vertices, &triangles[..]).unwrap();
     let spheres = [Sphere::new(Vec3::ONE, 2.0), Sphere::new(Vec3::ZERO, 0.5)];
     let both = (mesh, Spheres::new(&spheres).unwrap());
-    let words = bake::kd_tree(&both, &Options::balanced()).unwrap();
+    let words = bake::build(&both, &Plan::KdTree(Options::balanced())).unwrap();
     let tree = KdTree::open(&words).unwrap();
     let palette = [Material::matte(Vec3::X), Material::default()];
     let numbers: Vec<u8> = (0..tree_len(&both)).map(|i| (i % 2) as u8).collect();
-    let baker = Baker::new().mesh(&mesh).spheres(&spheres).kd_tree(&tree);
+    let baker = Baker::new().mesh(&mesh).spheres(&spheres).structure(tree);
     let asset_words = baker.materials(&palette, Numbers::Narrow(&numbers)).finish();
 
     let bytes: &[u8] = bytemuck::cast_slice(&asset_words);
@@ -100,8 +100,8 @@ fn baking_gives_the_same_bytes_everywhere() {
         .collect();
     let mesh = Mesh::new(&vertices, &triangles[..]).unwrap();
     let sums = [Options::small(), Options::balanced(), Options::fast()].map(|options| {
-        let tree = bake::kd_tree(&mesh, &options).unwrap();
-        checksum(&Baker::new().mesh(&mesh).kd_tree(&KdTree::open(&tree).unwrap()).finish())
+        let tree = bake::build(&mesh, &Plan::KdTree(options)).unwrap();
+        checksum(&Baker::new().mesh(&mesh).structure(KdTree::open(&tree).unwrap()).finish())
     });
     assert_eq!(sums, SUMS);
 }

@@ -25,7 +25,7 @@ fn built_baked_opened_and_walked() {
         let first = KdTree::build(&mesh, &mut arena, &options).unwrap();
         let second = KdTree::build(&mesh, &mut arena, &options).unwrap();
         assert_eq!(first.as_words(), second.as_words());
-        let words = Baker::new().mesh(&mesh).kd_tree(&first).finish();
+        let words = Baker::new().mesh(&mesh).structure(first).finish();
         if cfg!(target_endian = "big") {
             assert!(Asset::from_words(&words).is_err());
             continue;

@@ -3,7 +3,9 @@
 #![allow(missing_docs)]
 
 use hitscan::{
-    KdTree, Mesh, Scene, bake,
+    KdTree, Mesh, Scene,
+    accel::Plan,
+    bake,
     geometry::Sphere,
     glam::Vec3,
     kdtree::Options,
@@ -27,7 +29,7 @@ fn with_renderer<R>(
     show: impl FnOnce(&Renderer<'_, Scene<KdTree, (Mesh, Spheres)>>) -> R,
 ) -> R {
     let primitives = (Mesh::new(&FLOOR, &[[0_u16, 2, 1], [0, 3, 2]]).unwrap(), Spheres::new(&SPHERES).unwrap());
-    let words = bake::kd_tree(&primitives, &Options::fast()).unwrap();
+    let words = bake::build(&primitives, &Plan::KdTree(Options::fast())).unwrap();
     let scene = Scene::new(KdTree::open(&words).unwrap(), primitives).unwrap();
     let palette = [
         Material::matte(Vec3::new(0.6, 0.6, 0.5)),

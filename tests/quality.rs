@@ -3,7 +3,9 @@
 #![allow(missing_docs)]
 
 use hitscan::{
-    KdTree, Mesh, bake,
+    KdTree, Mesh,
+    accel::Plan,
+    bake,
     glam::Vec3,
     kdtree::{Options, Split},
 };
@@ -24,7 +26,7 @@ fn sheet(side: u32) -> (Vec<Vec3>, Vec<[u32; 3]>) {
 fn measured(side: u32, options: &Options) -> (f32, f32, f32) {
     let (vertices, triangles) = sheet(side);
     let mesh = Mesh::new(&vertices, &triangles[..]).unwrap();
-    let words = bake::kd_tree(&mesh, options).unwrap();
+    let words = bake::build(&mesh, &Plan::KdTree(*options)).unwrap();
     let (nodes, tests) = KdTree::open(&words).unwrap().expected_work();
     (words.len() as f32 * 4.0 / triangles.len() as f32, nodes, tests)
 }

@@ -12,6 +12,7 @@ use std::{env, error::Error, fmt::Write as _, fs, path::Path};
 use answer::Answer;
 use hitscan::{
     KdTree, Mesh, Scene,
+    accel::Plan,
     bake::{self, Baker},
     kdtree::Options,
 };
@@ -51,9 +52,9 @@ fn asset(
 ) -> Result<String, Box<dyn Error>> {
     let (vertices, triangles) = knot::mesh(along, around);
     let mesh = Mesh::new(&vertices, triangles.as_slice())?;
-    let tree = bake::kd_tree(&mesh, options)?;
+    let tree = bake::build(&mesh, &Plan::KdTree(*options))?;
     let tree = KdTree::open(&tree)?;
-    let words = Baker::new().mesh(&mesh).kd_tree(&tree).finish();
+    let words = Baker::new().mesh(&mesh).structure(tree).finish();
     let file = out.join(name).with_extension("hits");
     fs::write(&file, words.into_iter().flat_map(u32::to_le_bytes).collect::<Vec<_>>())?;
 

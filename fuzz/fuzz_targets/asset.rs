@@ -3,6 +3,7 @@
 
 use hitscan::{
     KdTree, Mesh, Ray, Scene,
+    accel::Plan,
     asset::Asset,
     bake::{self, Baker},
     glam::Vec3,
@@ -16,8 +17,8 @@ fn seed() -> Vec<u32> {
     let vertices: Vec<Vec3> = (0..24).map(|i| Vec3::new((i * 7 % 5) as f32, (i * 3 % 4) as f32, i as f32)).collect();
     let triangles: Vec<[u16; 3]> = (0..8).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
     let mesh = Mesh::new(&vertices, &triangles[..]).unwrap();
-    let tree = bake::kd_tree(&mesh, &Options::fast()).unwrap();
-    Baker::new().mesh(&mesh).kd_tree(&KdTree::open(&tree).unwrap()).finish()
+    let tree = bake::build(&mesh, &Plan::KdTree(Options::fast())).unwrap();
+    Baker::new().mesh(&mesh).structure(KdTree::open(&tree).unwrap()).finish()
 }
 
 fn checksum(words: &[u32]) -> u32 {

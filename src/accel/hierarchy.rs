@@ -30,6 +30,13 @@ pub struct Cell<N> {
     pub node: N,
 }
 
+impl<N> Cell<N> {
+    /// The same box for another node.
+    pub(crate) const fn with<M>(&self, node: M) -> Cell<M> {
+        Cell { bounds: self.bounds, node }
+    }
+}
+
 /// What is in a [`Cell`].
 #[derive(Clone, Copy, Debug)]
 pub enum Inside<N, L> {

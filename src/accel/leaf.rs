@@ -48,6 +48,14 @@ impl<'a> Leaf<'a> {
     }
 }
 
+/// Numbers in a row.
+impl From<core::ops::Range<u32>> for Leaf<'_> {
+    #[inline(always)]
+    fn from(range: core::ops::Range<u32>) -> Self {
+        Self { next: range.start, end: range.end, references: References::IDENTITY }
+    }
+}
+
 impl Iterator for Leaf<'_> {
     type Item = u32;
 

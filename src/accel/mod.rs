@@ -8,12 +8,14 @@ pub mod kdtree;
 mod leaf;
 mod list;
 mod malformed;
+mod structure;
 
 pub use hierarchy::{Cell, Hierarchy, Inside, MAX_LEVELS};
 pub use kdtree::KdTree;
 pub use leaf::Leaf;
 pub use list::List;
 pub use malformed::{Malformed, Reason};
+pub use structure::{AnyNode, AnyTraversal, Plan, Structure};
 
 use crate::geometry::{Aabb, PreparedRay};
 

@@ -29,6 +29,8 @@ pub enum Kind {
     Numbers,
     /// Placed scenes.
     Instances,
+    /// An asset within the asset: a scene to be placed.
+    Part,
     /// Materials: eight `f32` each.
     Materials,
     /// How many primitives, then a material number of 16 bits each.
@@ -38,7 +40,7 @@ pub enum Kind {
 }
 
 impl Kind {
-    const KNOWN: [Self; 14] = [
+    const KNOWN: [Self; 15] = [
         Self::Vertices,
         Self::NarrowIndices,
         Self::WideIndices,
@@ -51,6 +53,7 @@ impl Kind {
         Self::DualSplit,
         Self::Numbers,
         Self::Instances,
+        Self::Part,
         Self::Materials,
         Self::MaterialNumbers,
     ];
@@ -70,6 +73,7 @@ impl Kind {
             Self::DualSplit => u32::from_le_bytes(*b"dust"),
             Self::Numbers => u32::from_le_bytes(*b"nmbr"),
             Self::Instances => u32::from_le_bytes(*b"inst"),
+            Self::Part => u32::from_le_bytes(*b"part"),
             Self::Materials => u32::from_le_bytes(*b"matl"),
             Self::MaterialNumbers => u32::from_le_bytes(*b"matn"),
             Self::Unknown(code) => code,
@@ -101,6 +105,7 @@ impl fmt::Display for Kind {
             Self::DualSplit => f.write_str("dual-split tree"),
             Self::Numbers => f.write_str("numbers"),
             Self::Instances => f.write_str("instances"),
+            Self::Part => f.write_str("part"),
             Self::Materials => f.write_str("materials"),
             Self::MaterialNumbers => f.write_str("material numbers"),
             Self::Unknown(code) => write!(f, "unknown ({code:#010x})"),

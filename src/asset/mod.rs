@@ -52,11 +52,11 @@ pub(crate) const ALIGNMENT: usize = 4;
 ///
 /// ```
 /// # #[cfg(feature = "alloc")] {
-/// use hitscan::{KdTree, Mesh, Ray, asset::Asset, bake::{self, Baker}, glam::Vec3, kdtree::Options};
+/// use hitscan::{KdTree, Mesh, Ray, accel::Plan, asset::Asset, bake::{self, Baker}, glam::Vec3, kdtree::Options};
 /// let vertices = [Vec3::ZERO, Vec3::X, Vec3::Y];
 /// let mesh = Mesh::new(&vertices, &[[0_u16, 1, 2]])?;
-/// let tree = bake::kd_tree(&mesh, &Options::small())?;
-/// let words = Baker::new().mesh(&mesh).kd_tree(&KdTree::open(&tree)?).finish();
+/// let tree = bake::build(&mesh, &Plan::KdTree(Options::small()))?;
+/// let words = Baker::new().mesh(&mesh).structure(KdTree::open(&tree)?).finish();
 ///
 /// let scene = Asset::from_words(&words)?.scene::<KdTree, Mesh>()?;
 /// assert!(scene.any_hit(&Ray::new(Vec3::new(0.2, 0.2, -1.0), Vec3::Z)));
@@ -183,6 +183,11 @@ impl<'a> Asset<'a> {
     pub fn section(&self, kind: Kind) -> Result<&'a [u32], AssetError> {
         let found = self.sections().find(|section| section.kind == kind);
         found.map(|section| section.words).ok_or(AssetError::Missing { kind })
+    }
+
+    /// The assets that are parts of it, in order: scenes to be placed.
+    pub fn parts(&self) -> impl Iterator<Item = Result<Self, AssetError>> + use<'a> {
+        self.sections().filter(|section| section.kind == Kind::Part).map(|section| Self::from_words(section.words))
     }
 
     /// A view of what it holds, checked in full, in O(n).

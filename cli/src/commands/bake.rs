@@ -87,7 +87,7 @@ fn too_small(most: usize, least: usize) -> Failure {
 fn bake(mesh: &Mesh<'_>, geometry: &Geometry, built: Option<&Built>) -> Result<Vec<u32>, Failure> {
     let mut baker = Baker::new().mesh(mesh);
     if let Some(tree) = built.map(Built::tree).transpose()?.flatten() {
-        baker = baker.kd_tree(&tree);
+        baker = baker.structure(tree);
     }
     if !geometry.palette.materials.is_empty() {
         baker = baker.materials(&geometry.palette.materials, geometry.palette.as_numbers());

@@ -1,6 +1,11 @@
 use std::str::FromStr;
 
-use hitscan::{Error, KdTree, List, Primitives, Scene, accel::kdtree, bake, error::BuildError};
+use hitscan::{
+    Error, KdTree, List, Primitives, Scene,
+    accel::{Plan, kdtree},
+    bake,
+    error::BuildError,
+};
 
 use super::Queries;
 use crate::{failure::Failure, progress::Progress, units};
@@ -128,7 +133,7 @@ impl Built {
         let progress = Progress::spinner(&format!("building the {} …", structure.name()));
         let (words, name) = match structure {
             Structure::KdTree => {
-                let words = bake::kd_tree(primitives, options).map_err(refuse)?;
+                let words = bake::build(primitives, &Plan::KdTree(*options)).map_err(refuse)?;
                 (Some(words), format!("{} {}", structure.name(), preset.name()))
             }
             _ => (None, structure.name().to_owned()),
