@@ -245,10 +245,13 @@ impl<A: Accelerator, P: Primitives> Primitives for Instances<'_, A, P> {
 
     fn intersect(&self, index: u32, ray: &PreparedRay, span: &Span) -> Option<Hit> {
         let (instance, scene) = self.get(index)?;
-        let local = instance.transform.ray_back(ray.ray()).starting_at(span.t_min()).up_to(span.t_max());
-        let prepared = local.prepare();
+        // Prepared for the whole line: what is hit may not depend on which part of it is still of interest.
+        let line = instance.transform.ray_back(ray.ray()).starting_at(f32::NEG_INFINITY).up_to(f32::INFINITY);
+        let mut prepared = line.prepare();
+        let local = prepared.as_mut()?;
+        local.set_interval(span.t_min(), span.t_max());
         let mut inner = Inner::new(span.numbered_from(instance.first));
-        scene.search(prepared.as_ref()?, &mut inner);
+        scene.search(local, &mut inner);
         inner.hit().map(|hit| Hit { primitive: hit.primitive.saturating_add(instance.first), ..hit })
     }
 

@@ -198,6 +198,11 @@ impl PreparedRay {
         &self.ray
     }
 
+    /// Looks at another interval of the same line from now on; both limits are finite.
+    pub(crate) const fn set_interval(&mut self, t_min: f32, t_max: f32) {
+        (self.ray.t_min, self.ray.t_max) = (t_min, t_max);
+    }
+
     /// The parameter at which the ray enters the half-space behind the plane at `p` of `axis`; NaN if undecided.
     #[inline(always)]
     pub(crate) fn entry(&self, axis: Axis, p: f32) -> f32 {
