@@ -3,62 +3,67 @@
 
 mod common;
 
-use common::{FAMILIES, Random, adversarial_mesh, adversarial_ray};
+use common::{FAMILIES, Random, adversarial_mesh, adversarial_ray, bits, boxed, noise, plans};
 use hitscan::{
-    Arena, KdTree, List, Mesh, Scene,
-    kdtree::{Options, Split},
+    Arena, List, Mesh, Scene,
+    accel::{Mailbox, Structure},
+    error::BuildError,
+    from_fn,
+    geometry::Aabb,
+    glam::Vec3,
 };
 
 fn rays() -> usize {
     std::env::var("HITSCAN_RAYS").ok().and_then(|n| n.parse().ok()).unwrap_or(1_000_000)
 }
 
-fn options(random: &mut Random) -> Options {
-    let preset = random.pick(&[Options::small(), Options::balanced(), Options::fast()]);
-    Options {
-        split: random.pick(&[Split::Midpoint, Split::Median, Split::Sah, Split::Sah]),
-        leaf_size: random.pick(&[1, 1, 2, 4]),
-        max_depth: random.pick(&[None, None, Some(3), Some(40)]),
-        intersection_cost: random.pick(&[preset.intersection_cost, 2.0, 20.0]),
-        clip: !random.one_in(4),
-        max_bytes: random.pick(&[None, None, Some(300)]),
-        ..preset
-    }
-}
-
-#[test]
-fn kd_trees_answer_as_the_list() {
-    let mut random = Random::new(1);
+/// Casts rays at scenes of one kind of structure.
+fn compare(kind: usize, rays: usize) {
+    let mut random = Random::new(1 + kind as u64);
     let mut memory = vec![0; 1 << 16];
-    let (mut cast, mut hits, mut nodes, mut scenes) = (0, 0, 0, 0);
-    while cast < rays() {
+    let (mut cast, mut hits, mut words, mut scenes) = (0, 0, 0, 0);
+    while cast < rays {
         let family = random.below(FAMILIES);
         let (vertices, triangles) = adversarial_mesh(&mut random, family, 48);
         let mesh = Mesh::new(&vertices, &triangles[..]).unwrap();
-        let list = Scene::new(List::new(&mesh).unwrap(), &mesh).unwrap();
-        let options = options(&mut random);
-        let tree = match KdTree::build(&mesh, &mut Arena::new(&mut memory), &options) {
-            Ok(tree) => tree,
-            Err(error) => panic!("{error}: {options:?}"),
+        // Some scenes hold shapes that may not be clipped.
+        let number = random.pick(&[0, 0, 12]);
+        let boxes: Vec<Aabb> = (0..number).map(|_| boxed(&mut random, family)).collect();
+        let both = (mesh, from_fn(boxes.len() as u32, |i| boxes[i as usize], |i, ray| Some(noise(i, ray))));
+        let corners: Vec<Vec3> =
+            boxes.iter().flat_map(|b| [b.min, b.max, b.center()]).chain(vertices.iter().copied()).collect();
+        let list = Scene::new(List::new(&both).unwrap(), &both).unwrap();
+        let plan = plans::random(&mut random, kind);
+        let built = match Structure::build(&both, &mut Arena::new(&mut memory), &plan) {
+            Ok(built) => built,
+            Err(BuildError::Budget { .. }) => continue,
+            Err(error) => panic!("{error}: {plan:?}"),
         };
         scenes += 1;
-        nodes += tree.node_count();
-        let tree = Scene::new(KdTree::open(tree.as_words()).unwrap(), &mesh).unwrap();
+        words += built.as_words().len();
+        let opened = Structure::open(built.kind().unwrap(), built.as_words()).unwrap();
+        let scene = Scene::new(opened, &both).unwrap();
+        let mailbox = Scene::new(Mailbox(opened), &both).unwrap();
         for _ in 0..240 {
-            let ray = adversarial_ray(&mut random, family, &vertices);
+            let ray = adversarial_ray(&mut random, family, &corners);
             let expected = list.closest_hit(&ray);
-            let got = tree.closest_hit(&ray);
             cast += 1;
             hits += usize::from(expected.is_some());
-            assert_eq!(
-                got.map(|hit| (hit.t.to_bits(), hit.primitive)),
-                expected.map(|hit| (hit.t.to_bits(), hit.primitive)),
-                "{ray:?} {options:?} {vertices:?}"
-            );
-            assert_eq!(tree.any_hit(&ray), expected.is_some(), "{ray:?} {options:?} {vertices:?}");
+            assert_eq!(bits(scene.closest_hit(&ray)), bits(expected), "{ray:?} {plan:?} {vertices:?} {boxes:?}");
+            assert_eq!(bits(mailbox.closest_hit(&ray)), bits(expected), "{ray:?} {plan:?} {vertices:?} {boxes:?}");
+            assert_eq!(scene.any_hit(&ray), expected.is_some(), "{ray:?} {plan:?} {vertices:?} {boxes:?}");
         }
     }
     assert!(hits * 4 > cast, "{hits} of {cast}");
     // Single leaves would be equal, too.
-    assert!(scenes >= cast / 240 && nodes > scenes * 10, "{nodes} nodes in {scenes} scenes");
+    assert!(scenes >= cast / 240 && words > scenes * 40, "{words} words in {scenes} scenes");
+}
+
+#[test]
+fn every_structure_answers_as_the_list() {
+    std::thread::scope(|scope| {
+        for kind in 0..plans::KINDS {
+            scope.spawn(move || compare(kind, rays() / 2));
+        }
+    });
 }

@@ -3,18 +3,27 @@
 //! A structure is a small `Copy` view of words. It answers a ray with a [`Traversal`], a cursor that yields leaves; the
 //! queries of [`Scene`](crate::Scene) are short shells over it, written once for all structures.
 
+pub mod bvh;
+pub mod grid;
 mod hierarchy;
 pub mod kdtree;
 mod leaf;
 mod list;
+mod mailbox;
 mod malformed;
+pub mod octree;
+mod sort;
 mod structure;
 
+pub use bvh::Bvh;
+pub use grid::Grid;
 pub use hierarchy::{Cell, Hierarchy, Inside, MAX_LEVELS};
 pub use kdtree::KdTree;
 pub use leaf::Leaf;
 pub use list::List;
+pub use mailbox::Mailbox;
 pub use malformed::{Malformed, Reason};
+pub use octree::Octree;
 pub use structure::{AnyNode, AnyTraversal, Plan, Structure};
 
 use crate::geometry::{Aabb, PreparedRay};

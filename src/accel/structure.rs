@@ -1,6 +1,9 @@
 //! All structures as one type, for tools that let people choose.
 
-use super::{Accelerator, Cell, Hierarchy, Inside, KdTree, Leaf, List, Step, Traversal, kdtree};
+use super::{
+    Accelerator, Bvh, Cell, Grid, Hierarchy, Inside, KdTree, Leaf, List, Octree, Step, Traversal, bvh, grid, kdtree,
+    octree,
+};
 use crate::{
     arena::Arena,
     asset::{Asset, AssetError, Kind, Stored},
@@ -218,8 +221,14 @@ macro_rules! structures {
 }
 
 structures! {
+    /// A uniform grid.
+    Grid(grid::Options),
+    /// An octree.
+    Octree(octree::Options),
     /// A kD-tree.
     KdTree(kdtree::Options),
+    /// A bounding volume hierarchy.
+    Bvh(bvh::Options),
 }
 
 impl From<List> for Structure<'_> {

@@ -58,6 +58,12 @@ impl Lattice {
         self.plane(axis as u32, number)
     }
 
+    /// The first plane of an axis and the distance between planes, by the number of the axis, of which two bits count.
+    #[inline(always)]
+    pub(crate) fn along(&self, axis: u32) -> (f32, f32) {
+        (self.origin[axis as usize & 3], self.step[axis as usize & 3])
+    }
+
     /// As [`position`](Self::position), by the number of the axis, of which two bits count.
     #[inline(always)]
     pub(crate) fn plane(&self, axis: u32, number: u32) -> f32 {

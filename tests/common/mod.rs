@@ -3,6 +3,8 @@
 
 use hitscan::{Hit, Ray, geometry::Aabb, glam::Vec3};
 
+pub mod plans;
+
 /// A hit for comparisons that tell -0 from 0.
 pub fn bits(hit: Option<Hit>) -> Option<(u32, u32)> {
     hit.map(|hit| (hit.t.to_bits(), hit.primitive))

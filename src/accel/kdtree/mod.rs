@@ -8,7 +8,6 @@ mod build;
 mod node;
 mod open;
 mod options;
-mod sort;
 mod split;
 mod stage;
 mod traverse;

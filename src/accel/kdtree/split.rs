@@ -1,10 +1,8 @@
 //! Where to divide a cell: each [`Split`] is one function.
 
-use super::{
-    options::{Options, Split},
-    sort::{coordinate, key, sort},
-};
+use super::options::{Options, Split};
 use crate::{
+    accel::sort::{coordinate, key, sort},
     geometry::{Aabb, Axis},
     math::greatest,
 };

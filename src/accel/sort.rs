@@ -8,19 +8,19 @@ const DIGITS: usize = 256;
 
 /// A finite coordinate as a key that sorts like it; both zeros are one.
 #[inline(always)]
-pub(super) fn key(x: f32) -> u32 {
+pub(crate) fn key(x: f32) -> u32 {
     let bits = (x + 0.0).to_bits();
     bits ^ ((bits as i32 >> 31) as u32 | 0x8000_0000)
 }
 
 /// The coordinate of a key.
 #[inline(always)]
-pub(super) fn coordinate(key: u32) -> f32 {
+pub(crate) fn coordinate(key: u32) -> f32 {
     f32::from_bits(if key >> 31 == 0 { !key } else { key ^ 0x8000_0000 })
 }
 
 /// Sorts `keys`; `scratch` is at least as long.
-pub(super) fn sort(keys: &mut [u32], scratch: &mut [u32]) {
+pub(crate) fn sort(keys: &mut [u32], scratch: &mut [u32]) {
     let Some(scratch) = scratch.get_mut(..keys.len()) else { return };
     if keys.len() <= FEW { by_rank(keys, scratch) } else { radix(keys, scratch) }
 }

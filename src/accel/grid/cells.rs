@@ -1,0 +1,82 @@
+use super::{HEADER_WORDS, options::Form};
+use crate::accel::leaf::References;
+
+/// The table of cells: where the references of each begin.
+///
+/// Cells are numbered along z first, then y, then x.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Cells<'a> {
+    /// Pairs of words per 32 cells: which of them are occupied, and how many are in the words before; none if each cell
+    /// has an offset.
+    pub(super) blocks: &'a [u32],
+    /// Where the references of each cell, or of each occupied one, begin; and where the last ones end.
+    pub(super) offsets: References<'a>,
+}
+
+/// The number of a cell.
+#[inline]
+pub(super) const fn index([_, ny, nz]: [u32; 3], [x, y, z]: [u32; 3]) -> u32 {
+    x.wrapping_mul(ny).wrapping_add(y).wrapping_mul(nz).wrapping_add(z)
+}
+
+/// Words of blocks of the bitmask over `cells`.
+pub(super) const fn block_words(form: Form, cells: usize) -> usize {
+    match form {
+        Form::Full => 0,
+        Form::Bitmask => cells.div_ceil(32).saturating_mul(2),
+    }
+}
+
+/// Words of `count` numbers, each of two bytes if they are `narrow`.
+pub(super) const fn number_words(count: usize, narrow: bool) -> usize {
+    if narrow { count.div_ceil(2) } else { count }
+}
+
+/// Whether offsets up to `references` take two bytes.
+pub(super) const fn narrow_offsets(references: usize) -> bool {
+    references <= u16::MAX as usize
+}
+
+/// Whether numbers of primitives take two bytes.
+pub(super) const fn narrow_references(primitives: usize) -> bool {
+    primitives <= 1 << 16
+}
+
+/// Words of a whole grid.
+pub(super) const fn size(form: Form, primitives: usize, cells: usize, occupied: usize, references: usize) -> usize {
+    let entries = match form {
+        Form::Full => cells,
+        Form::Bitmask => occupied,
+    };
+    let offsets = number_words(entries.saturating_add(1), narrow_offsets(references));
+    (HEADER_WORDS + block_words(form, cells))
+        .saturating_add(offsets)
+        .saturating_add(number_words(references, narrow_references(primitives)))
+}
+
+impl Cells<'_> {
+    /// No cells.
+    pub(super) const NONE: Self = Self { blocks: &[], offsets: References::IDENTITY };
+
+    /// The first reference of a cell and how many there are, if any.
+    #[inline(always)]
+    pub(super) fn of(&self, cell: u32) -> Option<(u32, u32)> {
+        let entry = if self.blocks.is_empty() { cell } else { self.rank(cell)? };
+        let (first, end) = (self.offsets.get(entry), self.offsets.get(entry.wrapping_add(1)));
+        let count = end.wrapping_sub(first);
+        if count == 0 { None } else { Some((first, count)) }
+    }
+
+    /// How many occupied cells there are before an occupied one.
+    #[inline(always)]
+    fn rank(&self, cell: u32) -> Option<u32> {
+        let word = (cell >> 5) as usize * 2;
+        let bits = *self.blocks.get(word)?;
+        let bit = 1 << (cell & 31);
+        if bits & bit == 0 {
+            return None;
+        }
+        let before = *self.blocks.get(word | 1)?;
+        Some(before.wrapping_add((bits & (bit - 1)).count_ones()))
+    }
+}

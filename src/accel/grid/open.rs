@@ -1,0 +1,144 @@
+//! Words into a grid: looked at once, so that nothing can fail later.
+
+use glam::Vec3;
+
+use super::{
+    Grid, HEADER_WORDS, MAX_COUNT,
+    cells::{Cells, block_words, narrow_offsets, narrow_references, number_words},
+    cover::Frame,
+    options::Form,
+};
+use crate::{
+    accel::{Malformed, Reason, leaf::References},
+    asset,
+    geometry::{Aabb, Lattice},
+};
+
+/// The header as it stands in the words.
+pub(super) struct Header {
+    pub(super) primitives: u32,
+    pub(super) references: u32,
+    /// Offsets before the last.
+    pub(super) entries: u32,
+    pub(super) form: Form,
+    pub(super) resolution: [u32; 3],
+    pub(super) bounds: Aabb,
+}
+
+impl Header {
+    pub(super) fn to_words(&self) -> [u32; HEADER_WORDS] {
+        let [x0, y0, z0] = self.bounds.min.to_array().map(f32::to_bits);
+        let [x1, y1, z1] = self.bounds.max.to_array().map(f32::to_bits);
+        let [nx, ny, nz] = self.resolution;
+        let form = match self.form {
+            Form::Full => 0,
+            Form::Bitmask => 1,
+        };
+        [self.primitives, self.references, self.entries, form, nx, ny, nz, x0, y0, z0, x1, y1, z1]
+    }
+
+    fn from_words(words: &[u32]) -> Result<Self, (usize, Reason)> {
+        let words = words.first_chunk::<HEADER_WORDS>().ok_or((0, Reason::Length))?;
+        let &[primitives, references, entries, form, nx, ny, nz, x0, y0, z0, x1, y1, z1] = words;
+        let form = match form {
+            0 => Form::Full,
+            1 => Form::Bitmask,
+            _ => return Err((3, Reason::Header)),
+        };
+        let corner = |bits: [u32; 3]| Vec3::from_array(bits.map(f32::from_bits));
+        let bounds = Aabb::new(corner([x0, y0, z0]), corner([x1, y1, z1]));
+        Ok(Self { primitives, references, entries, form, resolution: [nx, ny, nz], bounds })
+    }
+}
+
+impl<'a> Grid<'a> {
+    /// The grid in `words`, as [`as_words`](Self::as_words) gave them; all of them are checked, in O(n).
+    ///
+    /// Afterwards a walk stays within the words and visits each cell at most once, whatever the words say. Whether they
+    /// also say the truth about some primitives, only a checksum over both can tell.
+    ///
+    /// # Errors
+    ///
+    /// [`Malformed`] says what is wrong and at which word.
+    pub fn open(words: &'a [u32]) -> Result<Self, Malformed> {
+        let malformed = |(word, reason)| Malformed { structure: asset::Kind::Grid, word, reason };
+        let header = Header::from_words(words).map_err(malformed)?;
+        let frame = Frame::new(&header.bounds, header.resolution);
+        // Clamped where it is out of range.
+        let whole = header.resolution.iter().all(|count| (1..=Lattice::MAX).contains(count));
+        if !whole || frame.cells() > MAX_COUNT as usize {
+            return Err(malformed((4, Reason::Header)));
+        }
+        let empty = header.primitives == 0 && header.bounds == Aabb::EMPTY;
+        if !(header.bounds.is_valid() || empty) {
+            return Err(malformed((7, Reason::Bounds)));
+        }
+        let grid = Self::view(words).ok_or(malformed((0, Reason::Length)))?;
+        grid.check_table(&header, frame.cells()).map_err(malformed)?;
+        let references = words
+            .len()
+            .saturating_sub(number_words(header.references as usize, narrow_references(header.primitives as usize)));
+        for index in 0..header.references {
+            if grid.references.get(index) >= header.primitives {
+                return Err(malformed((references, Reason::Primitive)));
+            }
+        }
+        Ok(grid)
+    }
+
+    /// One pass over blocks and offsets: ranks equal the occupied cells so far, and offsets never fall.
+    fn check_table(&self, header: &Header, cells: usize) -> Result<(), (usize, Reason)> {
+        let mut rank = 0;
+        for (index, block) in self.cells.blocks.chunks_exact(2).enumerate() {
+            let &[bits, before] = block else { continue };
+            // No cells behind the last.
+            let rest = cells.saturating_sub(index * 32);
+            let beyond = if rest < 32 { bits >> rest } else { 0 };
+            if before != rank || beyond != 0 {
+                return Err((HEADER_WORDS + index * 2, Reason::Link));
+            }
+            rank += bits.count_ones();
+        }
+        let entries = if header.form == Form::Full { cells } else { rank as usize };
+        if entries != header.entries as usize {
+            return Err((2, Reason::Header));
+        }
+        let mut least = 0;
+        for entry in 0..=header.entries {
+            let offset = self.cells.offsets.get(entry);
+            let first = entry == 0 && offset != 0;
+            let last = entry == header.entries && offset != header.references;
+            if first || last || offset < least {
+                return Err((HEADER_WORDS + self.cells.blocks.len(), Reason::References));
+            }
+            least = offset;
+        }
+        Ok(())
+    }
+
+    /// The parts of `words` by their header, if the lengths agree.
+    pub(super) fn view(words: &'a [u32]) -> Option<Self> {
+        let header = Header::from_words(words).ok()?;
+        let frame = Frame::new(&header.bounds, header.resolution);
+        let (count, entries) = (header.references as usize, header.entries as usize);
+        let (_, rest) = words.split_at_checked(HEADER_WORDS)?;
+        let (blocks, rest) = rest.split_at_checked(block_words(header.form, frame.cells()))?;
+        let narrow = narrow_offsets(count);
+        let (offsets, references) = rest.split_at_checked(number_words(entries.checked_add(1)?, narrow))?;
+        let offsets = if narrow { References::narrow(offsets) } else { References::wide(offsets) };
+        let narrow = narrow_references(header.primitives as usize);
+        if references.len() != number_words(count, narrow) {
+            return None;
+        }
+        Some(Self {
+            words,
+            cells: Cells { blocks, offsets },
+            references: if narrow { References::narrow(references) } else { References::wide(references) },
+            reference_count: header.references,
+            primitives: header.primitives,
+            resolution: header.resolution,
+            bounds: header.bounds,
+            lattice: frame.lattice,
+        })
+    }
+}

@@ -1,0 +1,96 @@
+/// How a grid says which primitives are in a cell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Form {
+    /// An offset per cell: 2 bytes, or 4 above 65,535 references.
+    Full,
+    /// A bit per cell, a count per 32 of them, and an offset per cell that is not empty.
+    Bitmask,
+}
+
+/// How a [`Grid`](super::Grid) is built: a preset, or one with knobs changed.
+///
+/// ```
+/// use hitscan::grid::{Form, Options};
+/// let options = Options { density: 2.0, form: Form::Full, ..Options::balanced() };
+/// let tight = Options::balanced().fit(64 * 1024);
+/// # let _ = (options, tight);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Options {
+    /// How many cells there are per primitive; fewer where the references would exceed the bytes allowed.
+    pub density: f32,
+    /// How a grid says which primitives are in a cell.
+    pub form: Form,
+    /// Whether certified primitives are referenced only where they themselves are, not wherever their bounds are.
+    pub clip: bool,
+    /// The greatest size in bytes per primitive: there are fewer cells where it would be exceeded.
+    pub bytes_per_primitive: u32,
+    /// The greatest size in bytes: there are fewer cells where it would be exceeded.
+    pub max_bytes: Option<usize>,
+}
+
+impl Options {
+    /// The fewest bytes that still make a grid worth its name.
+    #[must_use]
+    pub const fn small() -> Self {
+        Self { density: 3.0, bytes_per_primitive: 32, ..Self::balanced() }
+    }
+
+    /// Nearly as fast as [`fast`](Self::fast) in half the bytes.
+    #[must_use]
+    pub const fn balanced() -> Self {
+        Self { density: 4.0, form: Form::Bitmask, clip: true, bytes_per_primitive: 96, max_bytes: None }
+    }
+
+    /// The least time per ray.
+    #[must_use]
+    pub const fn fast() -> Self {
+        Self { density: 8.0, form: Form::Full, bytes_per_primitive: 200, ..Self::balanced() }
+    }
+
+    /// The same, but at most `bytes` in all.
+    #[must_use]
+    pub const fn fit(self, bytes: usize) -> Self {
+        Self { max_bytes: Some(bytes), ..self }
+    }
+
+    /// The most cells for `primitives`.
+    pub(super) const fn cells(&self, primitives: usize) -> u32 {
+        // Not a number is none; too many are as many as there can be.
+        let cells = (self.density * primitives as f32) as u32;
+        if cells < 1 {
+            1
+        } else if cells > super::MAX_COUNT {
+            super::MAX_COUNT
+        } else {
+            cells
+        }
+    }
+
+    /// The greatest size in bytes for `primitives`.
+    pub(super) const fn bytes(&self, primitives: usize) -> usize {
+        // A constant beside the rate, so that a handful of primitives can still be divided.
+        let rate = primitives.saturating_mul(self.bytes_per_primitive as usize).saturating_add(256);
+        // A single cell is always allowed.
+        let least = self.least_bytes(primitives);
+        let most = if rate > least { rate } else { least };
+        match self.max_bytes {
+            Some(bytes) if bytes < most => bytes,
+            _ => most,
+        }
+    }
+
+    /// The bytes of a single cell.
+    pub(super) const fn least_bytes(&self, primitives: usize) -> usize {
+        let occupied = if primitives > 0 { 1 } else { 0 };
+        super::build::size(self.form, primitives, 1, occupied, primitives).saturating_mul(4)
+    }
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self::balanced()
+    }
+}

@@ -1,0 +1,278 @@
+//! Where to divide a cell: each [`Split`] is one function.
+
+use super::{
+    node::{Point, behind},
+    options::{Options, Split},
+    stage::Item,
+};
+use crate::{
+    accel::sort::{coordinate, key, sort},
+    geometry::{Aabb, Axis},
+    math::greatest,
+};
+
+/// A point that divides a cell, and on which sides of its planes items in these go.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Division {
+    pub(super) point: Point,
+    pub(super) flat_before: [bool; 3],
+}
+
+impl Division {
+    /// No division: everything is before the point.
+    const NONE: Self = Self { point: Point([f32::INFINITY; 3]), flat_before: [true; 3] };
+
+    /// Which sides of the plane across an axis an item has part in: 1 before, 2 behind.
+    #[inline(always)]
+    fn sides(&self, axis: Axis, bounds: &Aabb) -> u32 {
+        let (min, max, plane) = (axis.of(bounds.min), axis.of(bounds.max), self.point.along(axis));
+        if min == plane && max == plane {
+            if self.flat_before.get(axis as usize) == Some(&false) { 2 } else { 1 }
+        } else if max <= plane {
+            1
+        } else if min >= plane {
+            2
+        } else {
+            3
+        }
+    }
+
+    /// The octants that an item has part in.
+    #[inline(always)]
+    pub(super) fn octants(&self, bounds: &Aabb) -> u32 {
+        let mut octants = 255;
+        for axis in Axis::ALL {
+            let sides = self.sides(axis, bounds);
+            octants &= if sides & 1 != 0 { 255 } else { behind(axis) };
+            octants &= if sides & 2 != 0 { 255 } else { !behind(axis) };
+        }
+        octants
+    }
+}
+
+/// How `cell` is best divided, or none if a leaf is expected to be cheaper.
+///
+/// `scratch` has [`SCRATCH_WORDS`] per item.
+pub(super) fn choose(items: &[Item], cell: &Aabb, options: &Options, scratch: &mut [u32]) -> Option<Division> {
+    let candidate = match options.split {
+        Split::Middle => middle(cell),
+        Split::Sah => sweep_all(items, cell, scratch)?,
+    };
+    subset(items, cell, options, &candidate)
+}
+
+/// The middle of a cell.
+fn middle(cell: &Aabb) -> Division {
+    let mut division = Division::NONE;
+    for (axis, plane) in Axis::ALL.into_iter().zip(&mut division.point.0) {
+        let (min, middle, max) = (axis.of(cell.min), axis.of(cell.center()), axis.of(cell.max));
+        // A plane on the border would make a child equal to the cell.
+        if min < middle && middle < max {
+            *plane = middle;
+        }
+    }
+    division
+}
+
+/// Words per item to sort in: where it begins, where it ends, and room to sort either.
+pub(super) const SCRATCH_WORDS: usize = 3;
+
+/// Sizes of the parts of a cell, relative to its largest, so that nothing overflows.
+struct Sizes {
+    /// Of the parts before and behind the plane, by axis.
+    parts: [[f32; 2]; 3],
+    /// Half the surface of the whole.
+    whole: f32,
+}
+
+/// Half the surface of a box, and a little for its edges so that boxes without surface have chances too.
+fn half_area([x, y, z]: [f32; 3]) -> f32 {
+    x * y + y * z + z * x + (x + y + z) * 1.0e-6
+}
+
+impl Sizes {
+    fn new(cell: &Aabb, point: &Point) -> Self {
+        let size = cell.size();
+        let unit = 1.0 / greatest(size.max_element(), f32::MIN_POSITIVE);
+        let part = |axis: Axis| {
+            let (min, max, plane) = (axis.of(cell.min), axis.of(cell.max), point.along(axis));
+            if plane < f32::INFINITY { [(plane - min) * unit, (max - plane) * unit] } else { [(max - min) * unit, 0.0] }
+        };
+        let parts = [part(Axis::X), part(Axis::Y), part(Axis::Z)];
+        Self { parts, whole: half_area((size * unit).to_array()) }
+    }
+
+    /// The chance that a ray through the cell goes through an octant: its surface over the cell's (MacDonald and Booth
+    /// 1990).
+    fn chance(&self, octant: u32) -> f32 {
+        let [x, y, z] = self.parts;
+        let side = |[before, behind]: [f32; 2], bit: u32| if octant >> bit & 1 == 0 { before } else { behind };
+        half_area([side(x, 0), side(y, 1), side(z, 2)]) / self.whole
+    }
+}
+
+/// What it costs to enter a child, in visits to a node.
+const CHILD: f32 = 0.3;
+
+/// Of a division, the axes along which it is expected to pay; none if a leaf is cheaper.
+fn subset(items: &[Item], cell: &Aabb, options: &Options, division: &Division) -> Option<Division> {
+    // How many items have part in which sides of the three planes: a digit of base 4 an axis.
+    let mut counts = [0_u32; 64];
+    for item in items {
+        let place = |axis: Axis| division.sides(axis, &item.bounds) << (2 * axis as u32);
+        if let Some(count) = counts.get_mut((place(Axis::X) | place(Axis::Y) | place(Axis::Z)) as usize & 63) {
+            *count += 1;
+        }
+    }
+    let mut best = None;
+    let mut least = options.intersection_cost * items.len() as f32;
+    for axes in 1..8_u32 {
+        let mut part = *division;
+        for (axis, plane) in part.point.0.iter_mut().enumerate() {
+            if axes >> axis & 1 == 0 {
+                *plane = f32::INFINITY;
+            }
+        }
+        // An axis that is not divided has been left out already.
+        if axes.count_ones() != part.point.0.iter().filter(|plane| plane.is_finite()).count() as u32 {
+            continue;
+        }
+        let sizes = Sizes::new(cell, &part.point);
+        let mut cost = 1.0;
+        for octant in 0..8_u32 {
+            if octant & !axes != 0 {
+                continue;
+            }
+            let mut inside = 0;
+            for (place, &count) in counts.iter().enumerate() {
+                let side = |axis: u32| (place as u32 >> (2 * axis)) >> (octant >> axis & 1) & 1 | !axes >> axis & 1;
+                inside += side(0) * side(1) * side(2) * count;
+            }
+            if inside > 0 {
+                cost += sizes.chance(octant) * (CHILD + options.intersection_cost * inside as f32);
+            }
+        }
+        if cost < least {
+            least = cost;
+            best = Some(part);
+        }
+    }
+    best
+}
+
+/// A plane across an axis that costs less than all before it.
+struct Best {
+    min: f32,
+    max: f32,
+    /// The chance of a part without length, and what a length adds.
+    flat: f32,
+    scale: f32,
+    work: f32,
+    plane: f32,
+    flat_before: bool,
+}
+
+impl Best {
+    fn new(cell: &Aabb, axis: Axis) -> Self {
+        let size = cell.size();
+        let size = size / greatest(size.max_element(), f32::MIN_POSITIVE);
+        let (length, a, b) = (axis.of(size), axis.next().of(size), axis.next().next().of(size));
+        let rim = a + b + 1.0e-6;
+        let whole = a * b + length * rim;
+        Self {
+            min: axis.of(cell.min),
+            max: axis.of(cell.max),
+            flat: a * b / whole,
+            scale: length * rim / (whole * axis.of(cell.size())),
+            work: f32::INFINITY,
+            plane: f32::INFINITY,
+            flat_before: true,
+        }
+    }
+
+    #[inline]
+    fn offer(&mut self, plane: f32, before: usize, behind: usize, flat_before: bool) {
+        // On the border it would not divide.
+        if !(plane > self.min && plane < self.max) {
+            return;
+        }
+        let nearer = self.flat + (plane - self.min) * self.scale;
+        let farther = 1.0 + self.flat - nearer;
+        let mut work = nearer * before as f32 + farther * behind as f32;
+        // Cutting off a sliver of empty space does not pay.
+        let empty = if before == 0 {
+            1.0 - farther
+        } else if behind == 0 {
+            1.0 - nearer
+        } else {
+            0.0
+        };
+        if empty > 0.1 {
+            work *= 0.8;
+        }
+        if work < self.work {
+            (self.work, self.plane, self.flat_before) = (work, plane, flat_before);
+        }
+    }
+}
+
+/// The best plane across each axis: all through the items' bounds are tried, the cost is linear between them.
+fn sweep_all(items: &[Item], cell: &Aabb, scratch: &mut [u32]) -> Option<Division> {
+    let mut division = Division::NONE;
+    for axis in Axis::ALL {
+        let mut best = Best::new(cell, axis);
+        // A flat cell has no chances to compare.
+        if best.scale > 0.0 {
+            sweep(items, axis, &mut best, scratch)?;
+        }
+        *division.point.0.get_mut(axis as usize)? = best.plane;
+        *division.flat_before.get_mut(axis as usize)? = best.flat_before;
+    }
+    Some(division)
+}
+
+/// Sweeps a plane along an axis. Wald and Havran, *On building fast kd-trees for ray tracing, and on doing that in
+/// O(N log N)*, 2006, with begins, ends and flat items sorted apart: their numbers are all that is asked for.
+fn sweep(items: &[Item], axis: Axis, best: &mut Best, scratch: &mut [u32]) -> Option<()> {
+    let (begins, scratch) = scratch.split_at_mut_checked(items.len())?;
+    let (ends, scratch) = scratch.split_at_mut_checked(items.len())?;
+    // Begins from the front, flat items from the back.
+    let (mut thick, mut flat) = (0, items.len());
+    for item in items {
+        let (min, max) = (key(axis.of(item.bounds.min)), key(axis.of(item.bounds.max)));
+        if min == max {
+            flat -= 1;
+            *begins.get_mut(flat)? = min;
+        } else {
+            *begins.get_mut(thick)? = min;
+            *ends.get_mut(thick)? = max;
+            thick += 1;
+        }
+    }
+    let (begins, flats) = begins.split_at_mut_checked(thick)?;
+    let (ends, _) = ends.split_at_mut_checked(thick)?;
+    for keys in [&mut *begins, &mut *ends, &mut *flats] {
+        sort(keys, scratch);
+    }
+
+    // How many items begin before the plane, lie flat before it, and end before or in it.
+    let (mut begun, mut passed, mut ended) = (0, 0, 0);
+    loop {
+        let next = |keys: &[u32], index: usize| keys.get(index).copied().unwrap_or(u32::MAX);
+        let plane = next(begins, begun).min(next(ends, ended)).min(next(flats, passed));
+        if plane == u32::MAX {
+            return Some(());
+        }
+        let equal = |keys: &[u32], from: usize| keys.iter().skip(from).take_while(|&&key| key == plane).count();
+        ended += equal(ends, ended);
+        let inside = equal(flats, passed);
+        let (before, behind) = (begun + passed, (thick - ended) + (flats.len() - passed - inside));
+        let position = coordinate(plane);
+        best.offer(position, before + inside, behind, true);
+        if inside > 0 {
+            best.offer(position, before, behind + inside, false);
+        }
+        begun += equal(begins, begun);
+        passed += inside;
+    }
+}
