@@ -47,6 +47,15 @@ macro_rules! structures {
         }
 
         impl Plan {
+            /// The kind of section that holds the structure; a list needs none.
+            #[must_use]
+            pub const fn kind(&self) -> Option<Kind> {
+                match self {
+                    Self::List => None,
+                    $(Self::$name(_) => Some(Kind::$name),)*
+                }
+            }
+
             /// Words of arena that always suffice.
             #[must_use]
             pub const fn words(&self, primitives: usize) -> usize {
