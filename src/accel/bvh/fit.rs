@@ -24,19 +24,19 @@ pub(super) fn fit<P: Primitives + ?Sized>(
     lattice: &Lattice,
 ) {
     for index in (0..pairs.len()).rev() {
-        for side in [0, 1] {
-            let Some(link) = pairs.get(index).map(|pair| pair[side].link) else { continue };
-            let planes = if link.is_leaf() {
-                let leaf = Leaf::of(references, link.number(), link.count());
+        let Some(mut pair) = pairs.get(index).copied() else { continue };
+        for node in &mut pair {
+            node.planes = if node.link.is_leaf() {
+                let leaf = Leaf::of(references, node.link.number(), node.link.count());
                 let bounds = leaf.fold(Aabb::EMPTY, |bounds, number| bounds.union(&primitives.bounds(number)));
                 Planes::around(&bounds, lattice)
             } else {
-                let Some([left, right]) = pairs.get(link.number() as usize) else { continue };
+                let Some([left, right]) = pairs.get(node.link.number() as usize) else { continue };
                 left.planes.union(right.planes)
             };
-            if let Some(pair) = pairs.get_mut(index) {
-                pair[side].planes = planes;
-            }
+        }
+        if let Some(place) = pairs.get_mut(index) {
+            *place = pair;
         }
     }
 }

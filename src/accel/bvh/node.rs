@@ -98,7 +98,11 @@ impl Planes {
     /// The two planes of an axis in a word.
     #[inline(always)]
     pub(crate) const fn of(self, axis: Axis) -> u32 {
-        self.0[axis as usize]
+        match axis {
+            Axis::X => self.0[0],
+            Axis::Y => self.0[1],
+            Axis::Z => self.0[2],
+        }
     }
 
     /// The box in space. (Where planes coincide, the number of a lower one can be the greater.)
@@ -125,10 +129,9 @@ impl Surface {
     /// Half the surface, and a little for the lengths so that boxes without surface are told apart, too.
     #[inline]
     pub(crate) fn of(&self, planes: Planes) -> f32 {
-        let [x, y, z] = Axis::ALL.map(|axis| {
-            let word = planes.of(axis);
-            (word >> 16).saturating_sub(word & 0xffff) as i32 as f32 * self.0[axis as usize]
-        });
+        let length = |word: u32, unit: f32| (word >> 16).saturating_sub(word & 0xffff) as i32 as f32 * unit;
+        let ([x, y, z], [u, v, w]) = (planes.0, self.0);
+        let (x, y, z) = (length(x, u), length(y, v), length(z, w));
         x * y + y * z + z * x + (x + y + z) * 1.0e-6
     }
 }

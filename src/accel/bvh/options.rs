@@ -54,7 +54,7 @@ impl Options {
             method: Method::Sah,
             reinsertions: 3,
             leaf_size: 8,
-            intersection_cost: 0.53,
+            intersection_cost: 0.55,
             bytes_per_primitive: 10.6,
             max_bytes: None,
         }

@@ -33,9 +33,10 @@ struct Tree<'w> {
 pub(super) fn reinsert(pairs: &mut [Pair], parents: &mut [u32], counts: &mut [u32], surface: Surface, rounds: u32) {
     let mut tree = Tree { pairs, parents, counts, surface };
     tree.link_upward();
+    let end = tree.pairs.len() as u32 * 2;
     for round in 0..rounds {
-        let end = tree.pairs.len() as u32 * 2;
         for place in 0..end {
+            // From the last first: where small parts are in order, large ones find better places.
             let place = if round % 2 == 1 { place } else { end - 1 - place };
             if let Some(target) = tree.find(place) {
                 tree.move_to(place, target);
@@ -59,7 +60,7 @@ pub(super) fn order(pairs: &[Pair], counts: &[u32], old: &[u32], list: &mut [u32
 
 impl Tree<'_> {
     fn node(&self, place: u32) -> Node {
-        self.pairs.get(place as usize / 2).map_or(Node::NOTHING, |pair| pair[place as usize % 2])
+        self.pairs.as_flattened().get(place as usize).copied().unwrap_or(Node::NOTHING)
     }
 
     fn parent(&self, place: u32) -> u32 {
@@ -68,8 +69,8 @@ impl Tree<'_> {
 
     /// Puts a node into a place.
     fn put(&mut self, place: u32, node: Node) {
-        if let Some(pair) = self.pairs.get_mut(place as usize / 2) {
-            pair[place as usize % 2] = node;
+        if let Some(old) = self.pairs.as_flattened_mut().get_mut(place as usize) {
+            *old = node;
         }
         if !node.link.is_leaf()
             && let Some(parent) = self.parents.get_mut(node.link.number() as usize)
@@ -108,8 +109,8 @@ impl Tree<'_> {
             self.count(place as usize / 2);
             let hull = self.node(place).planes.union(self.node(place ^ 1).planes);
             place = self.parent(place);
-            match self.pairs.get_mut(place as usize / 2) {
-                Some(pair) => pair[place as usize % 2].planes = hull,
+            match self.pairs.as_flattened_mut().get_mut(place as usize) {
+                Some(node) => node.planes = hull,
                 None => return,
             }
         }
