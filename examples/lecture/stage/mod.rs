@@ -1,6 +1,8 @@
 //! What the programs of the lecture share: a mesh to look at, the clock, and pictures in `target/lecture`.
 #![allow(dead_code)]
 
+pub mod table;
+
 use std::{error::Error, f32::consts::TAU, fs, path::PathBuf, time::Instant};
 
 use hitscan::{

@@ -4,13 +4,16 @@
 //! frame, which hands out the children one after the other. What is written is not moved again.
 
 use super::{
-    HEADER_WORDS, leaf_words, least_words,
+    HEADER_WORDS,
+    distribute::distribute,
+    division::Division,
+    leaf_words, least_words,
     node::{self, MAX_FEW, MAX_PRIMITIVES, Node, Point},
     open::Header,
     options::{Options, Split},
     reference_halves,
-    split::{Division, SCRATCH_WORDS, choose},
-    stage::{FRAMES_WORDS, Frame, ITEM_WORDS, Item, Stage, swap},
+    split::{SCRATCH_WORDS, choose},
+    stage::{FRAMES_WORDS, Frame, ITEM_WORDS, Item, Stage},
 };
 use crate::{
     arena::Full,
@@ -224,49 +227,16 @@ impl<'w, 'p, P: Primitives + ?Sized> Builder<'w, 'p, P> {
     /// how many are in each octant.
     fn distribute(&mut self, task: &Task, division: &Division, most: usize) -> [u32; 8] {
         let (primitives, clip) = (self.primitives, self.options.clip);
-        let cells = [0, 1, 2, 3, 4, 5, 6, 7].map(|octant| division.point.octant(&task.cell, octant));
         self.stage.top += most - task.count;
         let (items, _) = self.stage.items(most);
-
-        // An item leaves room for at least one part, so that what is written stays behind what is read.
-        let (mut written, mut counts) = (0, [0_u32; 8]);
-        for read in most - task.count..most {
-            let Some(item) = items.get(read).copied() else { continue };
-            let octants = division.octants(&item.bounds);
-            for (octant, (cell, count)) in cells.iter().zip(&mut counts).enumerate() {
-                if octants >> octant & 1 == 0 {
-                    continue;
-                }
-                let bounds = if octants == 1 << octant {
-                    item.bounds
-                } else if clip && primitives.is_certified(item.primitive) {
-                    match primitives.clip(item.primitive, cell) {
-                        Some(part) => part.intersection(&item.bounds),
-                        None => continue,
-                    }
-                } else {
-                    item.bounds.intersection(cell)
-                };
-                if !bounds.is_empty()
-                    && let Some(place) = items.get_mut(written)
-                {
-                    *place = Item { bounds, primitive: item.primitive | (octant as u32) << TAG };
-                    written += 1;
-                    *count += 1;
-                }
+        let counts = distribute(items, most - task.count, division, &task.cell, |item, cell| {
+            if clip && primitives.is_certified(item.primitive) {
+                Some(primitives.clip(item.primitive, cell)?.intersection(&item.bounds))
+            } else {
+                Some(item.bounds.intersection(cell))
             }
-        }
-        sort(items, &counts);
-
-        // Back against the items of the cells that wait.
-        let gap = most - written;
-        for index in (0..written).rev() {
-            let Some(item) = items.get(index).copied() else { continue };
-            if let Some(place) = items.get_mut(index + gap) {
-                *place = Item { primitive: item.primitive & (MAX_PRIMITIVES - 1), ..item };
-            }
-        }
-        self.stage.top -= gap;
+        });
+        self.stage.top -= most - counts.iter().sum::<u32>() as usize;
         counts
     }
 
@@ -298,29 +268,5 @@ impl<'w, 'p, P: Primitives + ?Sized> Builder<'w, 'p, P> {
         }
         self.stage.top -= count;
         Ok(())
-    }
-}
-
-/// Where the octant stands while items are distributed.
-const TAG: u32 = MAX_PRIMITIVES.trailing_zeros();
-
-/// Sorts tagged items by their octants, in place (McIlroy, Bostic and McIlroy, *Engineering radix sort*, 1993).
-fn sort(items: &mut [Item], counts: &[u32; 8]) {
-    let (mut next, mut ends, mut sum) = ([0; 8], [0; 8], 0);
-    for ((next, end), &count) in next.iter_mut().zip(&mut ends).zip(counts) {
-        *next = sum;
-        sum += count as usize;
-        *end = sum;
-    }
-    for octant in 0..8 {
-        while let Some(item) = items.get(next[octant])
-            && next[octant] < ends[octant]
-        {
-            let home = (item.primitive >> TAG) as usize & 7;
-            if home != octant {
-                swap(items, next[octant], next[home]);
-            }
-            next[home] += 1;
-        }
     }
 }

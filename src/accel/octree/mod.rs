@@ -8,6 +8,9 @@
 //! by [`Octree::open`]; after either, no walk can leave its words or fail to end.
 
 mod build;
+mod distribute;
+mod division;
+mod hierarchy;
 mod node;
 mod open;
 mod options;
@@ -15,20 +18,21 @@ mod split;
 mod stage;
 mod traverse;
 
+pub use hierarchy::Octants;
 pub use options::{Options, Split};
 pub use traverse::OctreeTraversal;
 
 use self::node::{Node, Point};
-use super::{Accelerator, Cell, Hierarchy, Inside, Leaf, MAX_LEVELS};
+use super::{Accelerator, Cell, Hierarchy, Inside, MAX_LEVELS};
 use crate::{
     arena::Arena,
     asset::{Asset, Stored},
     error::{BuildError, Error},
-    geometry::{Aabb, Axis, PreparedRay},
+    geometry::{Aabb, PreparedRay},
     primitives::Primitives,
 };
 
-/// The greatest depth of a tree, and the height of a walk's stack: 256 bytes.
+/// The greatest depth of a tree, and the height of a walk's stack: 448 bytes.
 pub const MAX_DEPTH: usize = 16;
 
 /// Words before the nodes: counts and bounds.
@@ -152,7 +156,7 @@ impl<'a> Octree<'a> {
         let mut next = self.root();
         while let Some(cell) = next {
             let chance = if whole > 0.0 { cell.bounds.half_area() / whole } else { 1.0 };
-            // Parts of a node are none.
+            // The octants on some sides only are no node.
             if self.node(cell.node.word).is_some_and(|node| node.octants() == cell.node.octants) {
                 nodes += chance;
             }
@@ -203,52 +207,6 @@ impl<'a> Accelerator for Octree<'a> {
     #[inline]
     fn traverse(&self, ray: &PreparedRay) -> OctreeTraversal<'a> {
         OctreeTraversal::new(self, ray)
-    }
-}
-
-/// A node, or its octants on some sides of its planes.
-#[derive(Clone, Copy, Debug)]
-pub struct Octants {
-    word: u32,
-    octants: u32,
-}
-
-/// A node is seen as a plane across x, then y, then z.
-impl<'a> Hierarchy for Octree<'a> {
-    type Node = Octants;
-    type Leaf = Leaf<'a>;
-
-    fn root(&self) -> Option<Cell<Octants>> {
-        let octants = self.node(0)?.octants();
-        Some(Cell { bounds: self.bounds, node: Octants { word: 0, octants } })
-    }
-
-    fn open(&self, cell: &Cell<Octants>) -> Inside<Octants, Leaf<'a>> {
-        let Octants { word, octants } = cell.node;
-        let Some(node) = self.node(word) else { return Inside::Cells([None; 2]) };
-        if node.is_leaf() {
-            return Inside::Leaf(node.leaf_in(self.body, self.is_wide()));
-        }
-        let Some(point) = self.point(node.block()) else { return Inside::Cells([None; 2]) };
-        let part = |bounds: Aabb, octants: u32| match octants.count_ones() {
-            0 => None,
-            1 => {
-                let octant = octants.trailing_zeros();
-                let (bounds, word) = (point.octant(&bounds, octant), node.child(octant));
-                let octants = self.node(word)?.octants();
-                Some(Cell { bounds, node: Octants { word, octants } })
-            }
-            _ => Some(Cell { bounds, node: Octants { word, octants } }),
-        };
-        for axis in Axis::ALL {
-            let behind = octants & node::behind(axis);
-            let before = octants & !behind;
-            if before != 0 && behind != 0 {
-                let (below, above) = cell.bounds.split(axis, point.along(axis));
-                return Inside::Cells([part(below, before), part(above, behind)]);
-            }
-        }
-        Inside::Cells([part(cell.bounds, octants), None])
     }
 }
 

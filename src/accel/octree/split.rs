@@ -1,7 +1,8 @@
 //! Where to divide a cell: each [`Split`] is one function.
 
 use super::{
-    node::{Point, behind},
+    division::Division,
+    node::Point,
     options::{Options, Split},
     stage::Item,
 };
@@ -10,45 +11,6 @@ use crate::{
     geometry::{Aabb, Axis},
     math::greatest,
 };
-
-/// A point that divides a cell, and on which sides of its planes items in these go.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Division {
-    pub(super) point: Point,
-    pub(super) flat_before: [bool; 3],
-}
-
-impl Division {
-    /// No division: everything is before the point.
-    const NONE: Self = Self { point: Point([f32::INFINITY; 3]), flat_before: [true; 3] };
-
-    /// Which sides of the plane across an axis an item has part in: 1 before, 2 behind.
-    #[inline(always)]
-    fn sides(&self, axis: Axis, bounds: &Aabb) -> u32 {
-        let (min, max, plane) = (axis.of(bounds.min), axis.of(bounds.max), self.point.along(axis));
-        if min == plane && max == plane {
-            if self.flat_before.get(axis as usize) == Some(&false) { 2 } else { 1 }
-        } else if max <= plane {
-            1
-        } else if min >= plane {
-            2
-        } else {
-            3
-        }
-    }
-
-    /// The octants that an item has part in.
-    #[inline(always)]
-    pub(super) fn octants(&self, bounds: &Aabb) -> u32 {
-        let mut octants = 255;
-        for axis in Axis::ALL {
-            let sides = self.sides(axis, bounds);
-            octants &= if sides & 1 != 0 { 255 } else { behind(axis) };
-            octants &= if sides & 2 != 0 { 255 } else { !behind(axis) };
-        }
-        octants
-    }
-}
 
 /// How `cell` is best divided, or none if a leaf is expected to be cheaper.
 ///
@@ -114,40 +76,65 @@ impl Sizes {
 /// What it costs to enter a child, in visits to a node.
 const CHILD: f32 = 0.3;
 
+/// How many items have part in each octant, whichever axes are divided.
+///
+/// Indexed by a digit of two bits an axis: 1 before the plane, 2 behind it, 3 wherever.
+struct Counts([u32; 64]);
+
+impl Counts {
+    fn new(items: &[Item], division: &Division) -> Self {
+        // First, each item by the sides that it has part in, 3 being both.
+        let mut counts = [0_u32; 64];
+        for item in items {
+            let place = Axis::ALL.into_iter().fold(0, |place, axis| place << 2 | division.sides(axis, &item.bounds));
+            counts[place as usize & 63] += 1;
+        }
+        // Then, axis by axis, those on both sides are added to either.
+        for shift in [0, 2, 4] {
+            for base in (0..64_usize).filter(|place| place >> shift & 3 == 0) {
+                let (before, behind, wherever) =
+                    ((base | 1 << shift) & 63, (base | 2 << shift) & 63, (base | 3 << shift) & 63);
+                let (only_before, only_behind) = (counts[before], counts[behind]);
+                counts[before] += counts[wherever];
+                counts[behind] += counts[wherever];
+                counts[wherever] += only_before + only_behind;
+            }
+        }
+        Self(counts)
+    }
+
+    /// How many have part in an octant of a cell that is divided along these axes.
+    fn inside(&self, octant: u32, axes: u32) -> u32 {
+        let place = (0..3).fold(0, |place, axis| {
+            let side = if axes >> axis & 1 == 0 { 3 } else { 1 + (octant >> axis & 1) };
+            place << 2 | side
+        });
+        self.0[place as usize & 63]
+    }
+}
+
 /// Of a division, the axes along which it is expected to pay; none if a leaf is cheaper.
 fn subset(items: &[Item], cell: &Aabb, options: &Options, division: &Division) -> Option<Division> {
-    // How many items have part in which sides of the three planes: a digit of base 4 an axis.
-    let mut counts = [0_u32; 64];
-    for item in items {
-        let place = |axis: Axis| division.sides(axis, &item.bounds) << (2 * axis as u32);
-        if let Some(count) = counts.get_mut((place(Axis::X) | place(Axis::Y) | place(Axis::Z)) as usize & 63) {
-            *count += 1;
-        }
-    }
+    let counts = Counts::new(items, division);
     let mut best = None;
     let mut least = options.intersection_cost * items.len() as f32;
     for axes in 1..8_u32 {
         let mut part = *division;
+        let mut divided = true;
         for (axis, plane) in part.point.0.iter_mut().enumerate() {
             if axes >> axis & 1 == 0 {
                 *plane = f32::INFINITY;
             }
+            // Where there is no plane, the same was tried without this axis.
+            divided &= axes >> axis & 1 == 0 || *plane < f32::INFINITY;
         }
-        // An axis that is not divided has been left out already.
-        if axes.count_ones() != part.point.0.iter().filter(|plane| plane.is_finite()).count() as u32 {
+        if !divided {
             continue;
         }
         let sizes = Sizes::new(cell, &part.point);
         let mut cost = 1.0;
-        for octant in 0..8_u32 {
-            if octant & !axes != 0 {
-                continue;
-            }
-            let mut inside = 0;
-            for (place, &count) in counts.iter().enumerate() {
-                let side = |axis: u32| (place as u32 >> (2 * axis)) >> (octant >> axis & 1) & 1 | !axes >> axis & 1;
-                inside += side(0) * side(1) * side(2) * count;
-            }
+        for octant in (0..8_u32).filter(|octant| octant & !axes == 0) {
+            let inside = counts.inside(octant, axes);
             if inside > 0 {
                 cost += sizes.chance(octant) * (CHILD + options.intersection_cost * inside as f32);
             }
@@ -198,18 +185,7 @@ impl Best {
         }
         let nearer = self.flat + (plane - self.min) * self.scale;
         let farther = 1.0 + self.flat - nearer;
-        let mut work = nearer * before as f32 + farther * behind as f32;
-        // Cutting off a sliver of empty space does not pay.
-        let empty = if before == 0 {
-            1.0 - farther
-        } else if behind == 0 {
-            1.0 - nearer
-        } else {
-            0.0
-        };
-        if empty > 0.1 {
-            work *= 0.8;
-        }
+        let work = nearer * before as f32 + farther * behind as f32;
         if work < self.work {
             (self.work, self.plane, self.flat_before) = (work, plane, flat_before);
         }
