@@ -5,9 +5,8 @@ mod common;
 
 use common::{FAMILIES, Random, adversarial_mesh, adversarial_ray, bits, boxed, noise, plans};
 use hitscan::{
-    Arena, List, Mesh, Scene,
+    List, Mesh, Scene,
     accel::{Mailbox, Structure},
-    error::BuildError,
     from_fn,
     geometry::Aabb,
     glam::Vec3,
@@ -33,12 +32,7 @@ fn compare(kind: usize, rays: usize) {
         let corners: Vec<Vec3> =
             boxes.iter().flat_map(|b| [b.min, b.max, b.center()]).chain(vertices.iter().copied()).collect();
         let list = Scene::new(List::new(&both).unwrap(), &both).unwrap();
-        let plan = plans::random(&mut random, kind);
-        let built = match Structure::build(&both, &mut Arena::new(&mut memory), &plan) {
-            Ok(built) => built,
-            Err(BuildError::Budget { .. }) => continue,
-            Err(error) => panic!("{error}: {plan:?}"),
-        };
+        let Some((plan, built)) = plans::build(&mut random, kind, &both, &mut memory) else { continue };
         scenes += 1;
         words += built.as_words().len();
         let opened = Structure::open(built.kind().unwrap(), built.as_words()).unwrap();

@@ -14,13 +14,14 @@ mod common;
 
 use std::{collections::BTreeMap, fmt::Debug};
 
-use common::bits;
+use common::{bits, plans};
 use hitscan::{
-    Accelerator, Arena, Error, Hit, KdTree, List, Mesh, Primitives, Ray, Scene,
+    Accelerator, Arena, Error, Hit, List, Mesh, Primitives, Ray, Scene,
+    accel::{Plan, Structure},
     error::BuildError,
     geometry::{Aabb, Sphere},
     glam::Vec3,
-    kdtree::{Options, Split},
+    kdtree,
     primitives::{MeshError, Spheres},
     query::Progress,
 };
@@ -145,21 +146,19 @@ impl Tally {
     fn ask_all<P: Primitives>(&mut self, case: &Case<'static>, primitives: &P) {
         let list = Scene::new(List::new(primitives).unwrap(), primitives).unwrap();
         let expected = self.ask(case, &list, &"list", None);
-        for (split, leaf_size) in
-            [Split::Midpoint, Split::Median, Split::Sah].into_iter().flat_map(|split| [(split, 1), (split, 4)])
-        {
-            let options = Options { split, leaf_size, ..Options::balanced() };
-            let mut memory = vec![0; KdTree::words(primitives.len() as usize, &options)];
-            match KdTree::build(primitives, &mut Arena::new(&mut memory), &options) {
-                Ok(tree) => {
-                    let opened = KdTree::open(tree.as_words()).unwrap();
+        let fine = Plan::KdTree(kdtree::Options { leaf_size: 4, ..kdtree::Options::fast() });
+        for (name, plan) in plans::presets().into_iter().chain([("kD-tree with leaves of 4", fine)]) {
+            let mut memory = vec![0; plan.words(primitives.len() as usize)];
+            match Structure::build(primitives, &mut Arena::new(&mut memory), &plan) {
+                Ok(built) => {
+                    let opened = Structure::open(plan.kind().unwrap(), built.as_words()).unwrap();
                     let scene = Scene::new(opened, primitives).unwrap();
-                    self.ask(case, &scene, &(split, leaf_size), Some(&expected));
+                    self.ask(case, &scene, &name, Some(&expected));
                 }
                 Err(BuildError::Full(_)) if case.build == "ok_or_capacity_err" => {
-                    self.refused.push(format!("{} {options:?}", case.id));
+                    self.refused.push(format!("{} {name}", case.id));
                 }
-                Err(error) => self.failures.push(format!("{}: {error}: {options:?}", case.id)),
+                Err(error) => self.failures.push(format!("{}: {error}: {plan:?}", case.id)),
             }
         }
     }

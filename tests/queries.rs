@@ -5,12 +5,14 @@ mod common;
 
 use std::cell::Cell;
 
-use common::{FAMILIES, Random, adversarial_mesh, adversarial_ray, bits, boxed, coordinate, noise, point};
+use common::{FAMILIES, Random, adversarial_mesh, adversarial_ray, bits, boxed, coordinate, noise, plans, point};
 use hitscan::{
-    Accelerator, Arena, Hit, KdTree, List, Mesh, PreparedRay, Primitives, Ray, Scene, Span, from_fn,
+    Accelerator, Arena, Hit, KdTree, List, Mesh, PreparedRay, Primitives, Ray, Scene, Span,
+    accel::Mailbox,
+    from_fn,
     geometry::{Aabb, Sphere, Triangle},
     glam::Vec3,
-    kdtree::{Options, Split},
+    kdtree::Options,
     primitives::{Sides, Spheres},
     query::Progress,
 };
@@ -142,16 +144,6 @@ fn compare<A: Accelerator, P: Primitives>(scene: &Scene<A, P>, nodes: u32, ray: 
     }
 }
 
-fn options(random: &mut Random) -> Options {
-    Options {
-        split: random.pick(&[Split::Midpoint, Split::Median, Split::Sah]),
-        leaf_size: random.pick(&[1, 1, 3]),
-        intersection_cost: random.pick(&[0.45, 2.0, 20.0]),
-        clip: !random.one_in(4),
-        ..Options::fast()
-    }
-}
-
 fn ball(random: &mut Random, family: usize) -> Sphere {
     let own = coordinate(random, family).abs();
     let radius = random.pick(&[1.0, 0.25, own]);
@@ -179,15 +171,18 @@ fn cast(rays: usize, seed: u64, with_shapes: bool) {
             .chain(stacks.iter().enumerate().map(|(i, &stack)| (Shape::Stack(stack), 1 << (i % 3))))
             .collect();
         let all = ((mesh, Spheres::new(&balls).unwrap()), Stacks(stacks));
-        let options = options(&mut random);
-        let tree = KdTree::build(&all, &mut Arena::new(&mut memory), &options).unwrap();
-        let nodes = tree.node_count() as u32;
-        let (list, tree) = (Scene::new(List::new(&all).unwrap(), &all).unwrap(), Scene::new(tree, &all).unwrap());
+        let kind = random.below(plans::KINDS);
+        let Some((_, built)) = plans::build(&mut random, kind, &all, &mut memory) else { continue };
+        // Whatever a structure counts, there is no more of it than bits.
+        let nodes = built.as_words().len() as u32 * 32;
+        let list = Scene::new(List::new(&all).unwrap(), &all).unwrap();
+        let (scene, mailbox) = (Scene::new(built, &all).unwrap(), Scene::new(Mailbox(built), &all).unwrap());
         for _ in 0..50 {
             let ray = adversarial_ray(&mut random, family, &vertices).seeing(random.pick(&[u32::MAX, 1, 4, 0]));
             let expected = gather(&shapes, &ray);
             compare(&list, all.len(), &ray, &expected);
-            compare(&tree, nodes, &ray, &expected);
+            compare(&scene, nodes, &ray, &expected);
+            compare(&mailbox, nodes, &ray, &expected);
             if !expected.is_empty() {
                 // Both ends of the interval belong to it.
                 let (first, last) = (random.pick(&expected).t, random.pick(&expected).t);
@@ -195,7 +190,7 @@ fn cast(rays: usize, seed: u64, with_shapes: bool) {
                     let ray = ray.starting_at(ends.0).up_to(ends.1);
                     let expected = gather(&shapes, &ray);
                     compare(&list, all.len(), &ray, &expected);
-                    compare(&tree, nodes, &ray, &expected);
+                    compare(&scene, nodes, &ray, &expected);
                     count += 1;
                 }
             }
@@ -252,24 +247,27 @@ impl Capsule {
     }
 }
 
-/// Compares the tree with the list on rays at the corners of the primitives' boxes.
-fn tree_is_list<P: Primitives>(random: &mut Random, family: usize, primitives: &P, memory: &mut [u32], rays: usize) {
-    let options = options(random);
-    let tree = match KdTree::build(primitives, &mut Arena::new(memory), &options) {
-        Ok(tree) => tree,
-        Err(error) => panic!("{error} {options:?}"),
-    };
+/// Compares a structure with the list on rays at the corners of the primitives' boxes.
+fn structure_is_list<P: Primitives>(
+    random: &mut Random,
+    family: usize,
+    primitives: &P,
+    memory: &mut [u32],
+    rays: usize,
+) {
+    let kind = random.below(plans::KINDS);
+    let Some((plan, built)) = plans::build(random, kind, primitives, memory) else { return };
     let corners: Vec<Vec3> = (0..primitives.len())
         .map(|i| primitives.bounds(i))
         .flat_map(|b| [b.min, b.max, Vec3::new(b.min.x, b.max.y, b.min.z)])
         .collect();
     let list = Scene::new(List::new(primitives).unwrap(), primitives).unwrap();
-    let tree = Scene::new(tree, primitives).unwrap();
+    let scene = Scene::new(built, primitives).unwrap();
     for _ in 0..rays {
         let ray = adversarial_ray(random, family, &corners);
         let expected = list.closest_hit(&ray);
-        assert_eq!(bits(tree.closest_hit(&ray)), bits(expected), "{ray:?} {options:?} {corners:?}");
-        assert_eq!(tree.any_hit(&ray), expected.is_some(), "{ray:?}");
+        assert_eq!(bits(scene.closest_hit(&ray)), bits(expected), "{ray:?} {plan:?} {corners:?}");
+        assert_eq!(scene.any_hit(&ray), expected.is_some(), "{ray:?}");
     }
 }
 
@@ -289,10 +287,10 @@ fn own_shapes_in_trees_are_hit_as_in_the_list() {
             .collect();
         let capsule = |i: u32| &capsules[i as usize];
         let shapes = from_fn(number, |i| capsule(i).bounds(), |i, ray| capsule(i).intersect(ray));
-        tree_is_list(&mut random, family, &shapes, &mut memory, 100);
+        structure_is_list(&mut random, family, &shapes, &mut memory, 100);
         let boxes: Vec<Aabb> = (0..number).map(|_| boxed(&mut random, family)).collect();
         let shapes = from_fn(number, |i| boxes[i as usize], |i, ray| Some(noise(i, ray)));
-        tree_is_list(&mut random, family, &shapes, &mut memory, 100);
+        structure_is_list(&mut random, family, &shapes, &mut memory, 100);
     }
 }
 
@@ -319,7 +317,7 @@ fn mixed_scenes_in_trees_are_hit_as_in_the_list() {
         let (vertices, triangles) = adversarial_mesh(&mut random, family, 16);
         let balls: Vec<Sphere> = (0..1 + random.below(16)).map(|_| ball(&mut random, family)).collect();
         let both = (Mesh::new(&vertices, &triangles[..]).unwrap(), Spheres::new(&balls).unwrap());
-        tree_is_list(&mut random, family, &both, &mut memory, 200);
+        structure_is_list(&mut random, family, &both, &mut memory, 200);
     }
 }
 

@@ -1,8 +1,9 @@
-//! Real meshes against the truth in double precision: no fault, no leak, no wrong primitive, whatever the tree.
+//! Real meshes against the truth in double precision: no fault, no leak, no wrong primitive, whatever the structure.
 //!
 //! `HITSCAN_DATA` names a folder with, per mesh, `NAME.tri` (`u32` count, nine `f32` a triangle) and in `truth/` 20,000
 //! rays `NAME.rays` (six `f32`), their answers `NAME.f64` (24 bytes: see [`Truth`]) and `NAME.json` with the tolerance
 //! `delta`. Without it nothing is tested, and the test says so.
+#![cfg(feature = "alloc")]
 #![allow(missing_docs)]
 
 mod common;
@@ -19,10 +20,10 @@ use std::{
     thread,
 };
 
-use common::bits;
-use hitscan::{Arena, Hit, KdTree, List, Mesh, Ray, Scene, glam::Vec3, kdtree::Options};
+use common::{bits, plans};
+use hitscan::{Hit, List, Mesh, Ray, Scene, accel::Structure, bake, glam::Vec3};
 
-/// Meshes above this many triangles are tested with one preset only.
+/// Meshes above this many triangles are tested with one preset of each structure only.
 const LARGE: usize = 500_000;
 
 /// What the reference says of a ray.
@@ -62,8 +63,8 @@ struct Verdict {
     wrong_primitives: usize,
     /// Uncertain rays answered outside the range: counted, not failed.
     loose: usize,
-    /// Differences between trees.
-    presets: usize,
+    /// Differences between structures.
+    structures: usize,
     /// Differences from the list.
     list: usize,
 }
@@ -133,11 +134,10 @@ fn test(folder: &Path, name: &str) -> Verdict {
     let mesh = Mesh::new(&vertices, &triangles[..]).unwrap();
     let mut verdict = Verdict::default();
     let mut expected = Vec::new();
-    let presets = [Options::balanced(), Options::small(), Options::fast()];
-    for options in &presets[..if triangles.len() > LARGE { 1 } else { 3 }] {
-        let mut memory = vec![0; KdTree::words(triangles.len(), options)];
-        let tree = KdTree::build(&mesh, &mut Arena::new(&mut memory), options).unwrap();
-        let scene = Scene::new(tree, &mesh).unwrap();
+    for (_, plan) in plans::presets().iter().filter(|(name, _)| triangles.len() <= LARGE || name.ends_with("balanced"))
+    {
+        let words = bake::build(&mesh, plan).unwrap();
+        let scene = Scene::new(Structure::open(plan.kind().unwrap(), &words).unwrap(), &mesh).unwrap();
         let hits: Vec<Option<Hit>> = rays.iter().map(|ray| scene.closest_hit(ray)).collect();
         if expected.is_empty() {
             rays.iter().zip(&answers).zip(&hits).for_each(|((ray, truth), hit)| {
@@ -146,7 +146,7 @@ fn test(folder: &Path, name: &str) -> Verdict {
             });
             expected = hits;
         } else {
-            verdict.presets += hits.iter().zip(&expected).filter(|(a, b)| bits(**a) != bits(**b)).count();
+            verdict.structures += hits.iter().zip(&expected).filter(|(a, b)| bits(**a) != bits(**b)).count();
         }
     }
     let list = Scene::new(List::new(&mesh).unwrap(), &mesh).unwrap();
@@ -206,11 +206,11 @@ fn real_meshes_are_answered_as_in_double_precision() {
                 while let Some(name) = names.get(next.fetch_add(1, Ordering::Relaxed)) {
                     let v = test(&folder, name);
                     let line = format!(
-                        "{name}: certain {} faults {} leaks {} wrong-primitive {} loose {} | presets differ {} list differs {}\n",
-                        v.certain, v.faults, v.leaks, v.wrong_primitives, v.loose, v.presets, v.list
+                        "{name}: certain {} faults {} leaks {} wrong-primitive {} loose {} | structures differ {} list differs {}\n",
+                        v.certain, v.faults, v.leaks, v.wrong_primitives, v.loose, v.structures, v.list
                     );
                     say(&line);
-                    if v.faults + v.wrong_primitives + v.presets + v.list > 0 {
+                    if v.faults + v.wrong_primitives + v.structures + v.list > 0 {
                         bad.lock().unwrap().push(line);
                     }
                 }

@@ -1,6 +1,12 @@
 //! Structures of every kind, with options from sensible to absurd.
 
-use hitscan::{accel::Plan, bvh, grid, kdtree, octree};
+use hitscan::{
+    Arena, Primitives,
+    accel::{Plan, Structure},
+    bvh,
+    error::BuildError,
+    grid, kdtree, octree,
+};
 
 use super::Random;
 
@@ -79,5 +85,20 @@ pub fn random(random: &mut Random, kind: usize) -> Plan {
                 max_bytes,
             })
         }
+    }
+}
+
+/// Builds by a plan of a kind at random; none if that allows too few bytes for so many primitives.
+pub fn build<'m, P: Primitives>(
+    numbers: &mut Random,
+    kind: usize,
+    primitives: &P,
+    memory: &'m mut [u32],
+) -> Option<(Plan, Structure<'m>)> {
+    let plan = random(numbers, kind);
+    match Structure::build(primitives, &mut Arena::new(memory), &plan) {
+        Ok(structure) => Some((plan, structure)),
+        Err(BuildError::Budget { .. }) => None,
+        Err(error) => panic!("{error}: {plan:?}"),
     }
 }

@@ -26,7 +26,8 @@ pub fn row(name: &str, mesh: &Mesh<'_>, plan: &Plan) -> super::Fallible {
     let (seconds, again) = super::timed(|| rays.iter().filter(|ray| scene.closest_hit(ray).is_some()).count());
     assert_eq!(hits, again);
     let (triangles, rays) = (mesh.indices().len() as f64, rays.len() as f64);
-    let (bytes, nodes, tests) = (words.len() as f64 * 4.0 / triangles, nodes.get() as f64 / rays, tests.get() as f64 / rays);
+    let (bytes, nodes, tests) =
+        (words.len() as f64 * 4.0 / triangles, nodes.get() as f64 / rays, tests.get() as f64 / rays);
     println!("{name:34} {:7.1}ms {bytes:9.1} {nodes:9.1} {tests:9.1} {:9.2}", build * 1.0e3, seconds / rays * 1.0e6);
     Ok(())
 }
