@@ -9,6 +9,12 @@ pub(crate) fn sqrt(x: f32) -> f32 {
     libm::sqrtf(x)
 }
 
+/// Square root of a double, correctly rounded.
+#[inline]
+pub(crate) fn sqrt64(x: f64) -> f64 {
+    libm::sqrt(x)
+}
+
 /// `x` to the power of `y`.
 #[inline]
 pub(crate) fn pow(x: f32, y: f32) -> f32 {

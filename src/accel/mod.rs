@@ -3,6 +3,7 @@
 //! A structure is a small `Copy` view of words. It answers a ray with a [`Traversal`], a cursor that yields leaves; the
 //! queries of [`Scene`](crate::Scene) are short shells over it, written once for all structures.
 
+mod bounded;
 pub mod bvh;
 pub mod grid;
 mod hierarchy;
@@ -15,6 +16,7 @@ pub mod octree;
 mod sort;
 mod structure;
 
+pub use bounded::{Bounded, BoundedTraversal};
 pub use bvh::Bvh;
 pub use grid::Grid;
 pub use hierarchy::{Cell, Hierarchy, Inside, MAX_LEVELS};

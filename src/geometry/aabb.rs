@@ -95,6 +95,19 @@ impl Aabb {
         self.min * 0.5 + self.max * 0.5
     }
 
+    /// The eight corners.
+    #[inline]
+    #[must_use]
+    pub fn corners(&self) -> [Vec3; 8] {
+        let (a, b) = (self.min, self.max);
+        [(a.x, a.y), (b.x, a.y), (a.x, b.y), (b.x, b.y)]
+            .map(|(x, y)| [Vec3::new(x, y, a.z), Vec3::new(x, y, b.z)])
+            .as_flattened()
+            .first_chunk()
+            .copied()
+            .unwrap_or([a; 8])
+    }
+
     /// Half the surface area, as the surface area heuristic weighs boxes; 0 if empty.
     #[inline]
     #[must_use]

@@ -5,21 +5,27 @@
 
 mod aabb;
 mod axis;
+pub mod bounding;
 mod lattice;
+mod obb;
 mod ray;
 mod sphere;
 mod transform;
 mod triangle;
+mod volume;
 
 pub use aabb::Aabb;
 pub use axis::Axis;
+pub use bounding::{Bounding, BoundingVolume};
 pub use lattice::Lattice;
+pub use obb::Obb;
 pub(crate) use ray::{AxisView, beyond, slack};
 pub use ray::{PreparedRay, Ray};
 pub use sphere::Sphere;
 pub use transform::{Singular, Transform};
 pub(crate) use triangle::intersect as intersect_triangle;
 pub use triangle::{Crossing, Triangle};
+pub use volume::Volume;
 
 /// The largest coordinate magnitude accepted, 2^126: differences of two such numbers do not overflow.
 pub const MAX_COORDINATE: f32 = f32::from_bits((126 + 127) << 23);

@@ -203,6 +203,13 @@ impl PreparedRay {
         (self.ray.t_min, self.ray.t_max) = (t_min, t_max);
     }
 
+    /// Whether there is an axis that never decides about a box: a ray that reaches back, whose reciprocal overflows.
+    #[inline(always)]
+    pub(crate) fn is_undecided(&self) -> bool {
+        let [x, y, z, _] = &self.views;
+        x.entry.is_nan() | y.entry.is_nan() | z.entry.is_nan()
+    }
+
     /// The parameter at which the ray enters the half-space behind the plane at `p` of `axis`; NaN if undecided.
     #[inline(always)]
     pub(crate) fn entry(&self, axis: Axis, p: f32) -> f32 {

@@ -1,8 +1,12 @@
 use glam::Vec3;
 
 use super::{Aabb, PreparedRay};
+use crate::math;
 
 /// A sphere.
+///
+/// Around points it is made by [`welzl`](Self::welzl), the least; [`ritter`](Self::ritter), in two passes;
+/// [`around_barycenter`](Self::around_barycenter) and [`around_box_center`](Self::around_box_center).
 ///
 /// ```
 /// use hitscan::{Ray, geometry::Sphere, glam::Vec3};
@@ -15,7 +19,7 @@ use super::{Aabb, PreparedRay};
 pub struct Sphere {
     /// The middle.
     pub center: Vec3,
-    /// The distance of its surface from the middle, above 0.
+    /// The distance of its surface from the middle: above 0 for one to be hit, 0 around a single point.
     pub radius: f32,
 }
 
@@ -58,7 +62,7 @@ impl Sphere {
             return None;
         }
         // Of the two roots the larger is computed, the smaller follows without cancellation.
-        let root = libm::sqrt(a * discriminant);
+        let root = math::sqrt64(a * discriminant);
         let q = if b < 0.0 { b - root } else { b + root };
         let (p, r) = ((dot(&f, &f) - radius * radius) / q, q / a);
         let (t0, t1) = if q == 0.0 { (0.0, 0.0) } else { (p as f32, r as f32) };

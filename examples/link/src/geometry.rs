@@ -2,7 +2,10 @@
 
 use core::hint::black_box;
 
-use hitscan::geometry::{Axis, Transform, Triangle};
+use hitscan::{
+    geometry::{Axis, Bounding, BoundingVolume, Obb, Transform, Triangle, Volume},
+    glam::Vec3,
+};
 
 use crate::input::{aabb, float, matrix, ray, some, sphere, vector};
 
@@ -12,6 +15,7 @@ pub fn all() {
     triangles();
     spheres();
     transforms();
+    volumes(some(vector, &mut None));
 }
 
 fn boxes() {
@@ -19,6 +23,7 @@ fn boxes() {
     black_box((a.union(&b), a.intersection(&b), a.is_empty(), a.is_valid(), a.contains(vector())));
     let axis = Axis::of_largest(vector());
     black_box((a.size(), a.center(), a.half_area(), a.split(axis, float()), axis.next().of(vector())));
+    black_box(a.corners());
     black_box(hitscan::geometry::Aabb::around(some(vector, &mut None).iter().copied()));
     black_box(ray().prepare().map(|ray| a.interval(&ray)));
 }
@@ -42,4 +47,15 @@ fn transforms() {
         black_box((inverse.point(vector()), inverse.vector(vector()), inverse.normal(vector())));
         black_box((transform.ray(&ray()), transform.bounds(&aabb()), ray().at(float())));
     }
+}
+
+fn volumes(points: &[Vec3]) {
+    let points = points.iter().copied();
+    for kind in Bounding::ALL {
+        black_box((kind.name(), kind.around(points.clone())));
+    }
+    let obb = Obb::new(vector(), matrix(), vector());
+    black_box((obb.is_valid(), obb.contains(vector()), obb.half_area()));
+    let two = (BoundingVolume::Sphere(sphere()), (BoundingVolume::Aabb(aabb()), BoundingVolume::Obb(obb)));
+    black_box((ray().prepare().map(|ray| two.may_meet(&ray, float())), two.volume()));
 }

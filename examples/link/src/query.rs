@@ -2,7 +2,10 @@
 
 use core::hint::black_box;
 
-use hitscan::{Accelerator, Arena, Hit, KdTree, List, Mesh, Primitives, Scene, kdtree::Options, primitives::Spheres};
+use hitscan::{
+    Accelerator, Arena, Hit, KdTree, List, Mesh, Primitives, Scene, accel::Bounded, kdtree::Options,
+    primitives::Spheres,
+};
 
 use crate::input::{ray, some, sphere, vector, word};
 
@@ -21,6 +24,7 @@ pub fn all() {
 fn with<P: Primitives>(primitives: &P) {
     if let Ok(list) = List::new(primitives) {
         cast(Scene::new(list, primitives));
+        cast(Scene::new(Bounded::new((sphere(), list.bounds()), list), primitives));
     }
     let mut memory = [0; 1024];
     if let Ok(tree) = KdTree::build(primitives, &mut Arena::new(black_box(memory.as_mut_slice())), &Options::default())
