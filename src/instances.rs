@@ -3,6 +3,10 @@
 //! Placed scenes are [`Primitives`] themselves, so that any structure over them is the top level of two: no traversal knows
 //! of levels. Deeper ones are a matter of types: scenes of [`Instances`] can be placed again.
 
+mod similar;
+
+pub use similar::Similar;
+
 use core::fmt;
 
 use crate::{
@@ -89,6 +93,11 @@ pub enum InstanceError {
         /// The instance.
         instance: u32,
     },
+    /// It changes angles, so that no distance can be measured through it.
+    Skewed {
+        /// The instance.
+        instance: u32,
+    },
     /// More than 2^32 - 2 instances or primitives in all.
     TooMany,
 }
@@ -105,6 +114,7 @@ impl fmt::Display for InstanceError {
             Self::Number { instance } => {
                 write!(f, "instance {instance} does not continue the numbers of the one before")
             }
+            Self::Skewed { instance } => write!(f, "instance {instance} changes angles, and with them distances"),
             Self::TooMany => write!(f, "at most 2^32 - 2 primitives can be numbered"),
         }
     }

@@ -56,6 +56,11 @@ macro_rules! structures {
                 }
             }
 
+            /// Every structure with its default options, the list first.
+            pub fn all() -> impl Iterator<Item = Self> {
+                [Self::List, $(Self::$name(<$options>::default()),)*].into_iter()
+            }
+
             /// Words of arena that always suffice.
             #[must_use]
             pub const fn words(&self, primitives: usize) -> usize {

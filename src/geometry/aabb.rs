@@ -1,7 +1,7 @@
 use glam::Vec3;
 
 use super::{Axis, PreparedRay, in_range};
-use crate::math::{greatest, least};
+use crate::math::{self, greatest, least};
 
 /// An axis-aligned box: all points between two corners, both included.
 ///
@@ -79,6 +79,29 @@ impl Aabb {
     #[must_use]
     pub fn contains(&self, point: Vec3) -> bool {
         self.min.cmple(point).all() && point.cmple(self.max).all()
+    }
+
+    /// How far `point` lies outside along each axis; 0 within.
+    #[inline(always)]
+    #[must_use]
+    pub fn gaps(&self, point: Vec3) -> Vec3 {
+        // A NaN, which only damaged words hold, counts as within.
+        let gap = |min: f32, max: f32, x: f32| greatest(greatest(min - x, x - max), 0.0);
+        let (min, max) = (self.min, self.max);
+        Vec3::new(gap(min.x, max.x, point.x), gap(min.y, max.y, point.y), gap(min.z, max.z, point.z))
+    }
+
+    /// The distance of the box from `point`; 0 within it.
+    ///
+    /// ```
+    /// # use hitscan::{geometry::Aabb, glam::Vec3};
+    /// assert_eq!(Aabb::new(Vec3::ZERO, Vec3::ONE).distance(Vec3::new(4.0, 0.5, 5.0)), 5.0);
+    /// ```
+    #[must_use]
+    pub fn distance(&self, point: Vec3) -> f32 {
+        // In `f64`, where no square of an `f32` over- or underflows.
+        let [x, y, z] = self.gaps(point).to_array().map(f64::from);
+        math::sqrt64(x * x + y * y + z * z) as f32
     }
 
     /// The edge lengths.

@@ -35,3 +35,9 @@ pub const MAX_COORDINATE: f32 = f32::from_bits((126 + 127) << 23);
 pub(crate) fn in_range(v: glam::Vec3) -> bool {
     v.x.abs() <= MAX_COORDINATE && v.y.abs() <= MAX_COORDINATE && v.z.abs() <= MAX_COORDINATE
 }
+
+/// The point at `offset` from `point`, rounded once.
+pub(crate) fn moved(point: glam::Vec3, [x, y, z]: [f64; 3]) -> glam::Vec3 {
+    let sum = |from: f32, by: f64| (f64::from(from) + by) as f32;
+    glam::Vec3::new(sum(point.x, x), sum(point.y, y), sum(point.z, z))
+}

@@ -1,6 +1,6 @@
 use glam::Vec3;
 
-use super::{Aabb, PreparedRay};
+use super::{Aabb, PreparedRay, moved};
 use crate::math;
 
 /// A sphere.
@@ -67,6 +67,39 @@ impl Sphere {
         let (p, r) = ((dot(&f, &f) - radius * radius) / q, q / a);
         let (t0, t1) = if q == 0.0 { (0.0, 0.0) } else { (p as f32, r as f32) };
         Some(if t1 < t0 { [t1, t0] } else { [t0, t1] })
+    }
+
+    /// From `point` to the middle, and how far that is.
+    fn to_center(self, point: Vec3) -> ([f64; 3], f64) {
+        let (p, c) = (point, self.center);
+        let [x, y, z] = [(p.x, c.x), (p.y, c.y), (p.z, c.z)].map(|(p, c)| f64::from(c) - f64::from(p));
+        ([x, y, z], math::sqrt64(x * x + y * y + z * z))
+    }
+
+    /// The point of the surface closest to `point`; from the middle, along the first axis.
+    #[must_use]
+    pub fn closest_point(&self, point: Vec3) -> Vec3 {
+        let ([x, y, z], far) = self.to_center(point);
+        let radius = f64::from(self.radius);
+        if far > 0.0 {
+            let part = 1.0 - radius / far;
+            moved(point, [x * part, y * part, z * part])
+        } else {
+            moved(point, [radius, 0.0, 0.0])
+        }
+    }
+
+    /// The distance of the surface from `point`, outside or inside.
+    ///
+    /// ```
+    /// # use hitscan::{geometry::Sphere, glam::Vec3};
+    /// let sphere = Sphere::new(Vec3::ZERO, 2.0);
+    /// assert_eq!((sphere.distance(Vec3::X * 5.0), sphere.distance(Vec3::Y)), (3.0, 1.0));
+    /// ```
+    #[must_use]
+    pub fn distance(&self, point: Vec3) -> f32 {
+        let difference = self.to_center(point).1 - f64::from(self.radius);
+        (if difference < 0.0 { -difference } else { difference }) as f32
     }
 }
 

@@ -47,6 +47,12 @@ impl Span {
         Some(Self { enter: self.clamp(enter), exit: self.clamp(exit), ..self })
     }
 
+    /// The same hits, none before `t`: what lies before is clamped to it.
+    #[inline]
+    pub(crate) fn not_before(self, t: f32) -> Self {
+        Self { enter: if t > self.enter { t } else { self.enter }, ..self }
+    }
+
     /// The hits from `from` up to `until`, clamped as these are.
     #[inline(always)]
     pub(crate) const fn between(self, from: Hit, until: Hit) -> Self {

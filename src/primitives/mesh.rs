@@ -2,7 +2,7 @@ use core::fmt;
 
 use glam::{Vec2, Vec3};
 
-use super::{Hit, Primitives, Span, Surface, unit};
+use super::{Hit, Primitives, Probe, Proximity, Span, Surface, unit};
 use crate::{
     asset::{Asset, AssetError, Kind, Stored},
     error::Error,
@@ -266,6 +266,18 @@ impl Primitives for Mesh<'_> {
 
     fn clip(&self, index: u32, cell: &Aabb) -> Option<Aabb> {
         self.triangle(index).clip(cell)
+    }
+}
+
+impl Proximity for Mesh<'_> {
+    fn closest_point(&self, number: u32, point: Vec3) -> Option<Vec3> {
+        self.indices.get(number)?;
+        Some(self.triangle(number).closest_point(point))
+    }
+
+    fn approach(&self, index: u32, probe: &Probe) -> Option<Hit> {
+        self.indices.get(index)?;
+        probe.accept(self.triangle(index).distance(probe.point()), index)
     }
 }
 

@@ -1,4 +1,6 @@
-use super::{Hit, Primitives, Span, Surface};
+use glam::Vec3;
+
+use super::{Hit, Primitives, Probe, Proximity, Span, Surface};
 use crate::{
     asset::{Asset, Stored},
     error::Error,
@@ -72,6 +74,26 @@ impl<A: Primitives, B: Primitives> Primitives for (A, B) {
         match index.checked_sub(self.0.len()) {
             None => self.0.clip(index, cell),
             Some(index) => self.1.clip(index, cell),
+        }
+    }
+}
+
+impl<A: Proximity, B: Proximity> Proximity for (A, B) {
+    fn closest_point(&self, number: u32, point: Vec3) -> Option<Vec3> {
+        match number.checked_sub(self.0.numbers()) {
+            None => self.0.closest_point(number, point),
+            Some(number) => self.1.closest_point(number, point),
+        }
+    }
+
+    fn approach(&self, index: u32, probe: &Probe) -> Option<Hit> {
+        match index.checked_sub(self.0.len()) {
+            None => self.0.approach(index, probe),
+            Some(second) => {
+                let base = self.0.numbers();
+                let hit = self.1.approach(second, &probe.numbered_from(base))?;
+                Some(Hit { primitive: hit.primitive.saturating_add(base), ..hit })
+            }
         }
     }
 }

@@ -1,6 +1,8 @@
 use core::fmt;
 
-use super::{Hit, Primitives, Span, Surface};
+use glam::Vec3;
+
+use super::{Hit, Primitives, Probe, Proximity, Span, Surface};
 use crate::{
     asset::{Asset, AssetError, Kind, Stored},
     error::Error,
@@ -180,6 +182,18 @@ impl<P: Primitives> Primitives for Reordered<'_, P> {
 
     fn clip(&self, index: u32, cell: &Aabb) -> Option<Aabb> {
         self.primitives.clip(index, cell)
+    }
+}
+
+impl<P: Proximity> Proximity for Reordered<'_, P> {
+    fn closest_point(&self, number: u32, point: Vec3) -> Option<Vec3> {
+        self.primitives.closest_point(self.renumbering.places.get(number)?, point)
+    }
+
+    fn approach(&self, index: u32, probe: &Probe) -> Option<Hit> {
+        let number = self.renumbering.numbers.get(index)?;
+        let hit = self.primitives.approach(index, &probe.renumbered(index, number))?;
+        Some(Hit { primitive: number, ..hit })
     }
 }
 

@@ -2,7 +2,7 @@ use core::fmt;
 
 use glam::{Vec2, Vec3};
 
-use super::{Hit, Primitives, Span, Surface, unit};
+use super::{Hit, Primitives, Probe, Proximity, Span, Surface, unit};
 use crate::{
     asset::{Asset, AssetError, Kind, Stored},
     error::Error,
@@ -87,6 +87,17 @@ impl Primitives for Spheres<'_> {
             front: ray.direction.dot(normal) < 0.0,
             error: magnitude.max_element() * (16.0 / 16_777_216.0),
         }
+    }
+}
+
+/// The closest point of the surface, also from within.
+impl Proximity for Spheres<'_> {
+    fn closest_point(&self, number: u32, point: Vec3) -> Option<Vec3> {
+        Some(self.list.get(number as usize)?.closest_point(point))
+    }
+
+    fn approach(&self, index: u32, probe: &Probe) -> Option<Hit> {
+        probe.accept(self.list.get(index as usize)?.distance(probe.point()), index)
     }
 }
 

@@ -127,6 +127,11 @@ impl Any {
         Self { from: start_of(ray), until: end_of(ray), found: false }
     }
 
+    /// At any hit of `span`.
+    pub(crate) const fn within(span: &Span) -> Self {
+        Self { from: span.from(), until: span.until(), found: false }
+    }
+
     #[inline(always)]
     pub(crate) const fn found(&self) -> bool {
         self.found

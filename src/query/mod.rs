@@ -2,8 +2,11 @@
 
 mod collector;
 mod hits;
+mod nearby;
+mod overlaps;
 mod paused;
 
 pub(crate) use collector::{Any, Closest, Collector, Inner, Nearest, Next, Where, end_of, start_of};
 pub use hits::Hits;
+pub use overlaps::Overlaps;
 pub use paused::{PausedQuery, Progress};

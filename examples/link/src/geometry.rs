@@ -25,25 +25,28 @@ fn boxes() {
     black_box((a.size(), a.center(), a.half_area(), a.split(axis, float()), axis.next().of(vector())));
     black_box(a.corners());
     black_box(hitscan::geometry::Aabb::around(some(vector, &mut None).iter().copied()));
+    black_box((a.gaps(vector()), a.distance(vector())));
     black_box(ray().prepare().map(|ray| a.interval(&ray)));
 }
 
 fn triangles() {
     let triangle = Triangle::new(vector(), vector(), vector());
     black_box((triangle.normal(), triangle.bounds(), triangle.clip(&aabb())));
+    black_box((triangle.closest_point(vector()), triangle.distance(vector())));
     if let Some(ray) = ray().prepare() {
         black_box((triangle.intersect(&ray, float(), float()), triangle.weights(&ray)));
     }
 }
 
 fn spheres() {
-    black_box(sphere().bounds());
+    black_box((sphere().bounds(), sphere().closest_point(vector()), sphere().distance(vector())));
     black_box(ray().prepare().map(|ray| sphere().intersect(&ray)));
 }
 
 fn transforms() {
     if let Ok(transform) = black_box(Transform::new(matrix(), vector())) {
         let inverse = transform.inverse();
+        black_box(inverse.factor());
         black_box((inverse.point(vector()), inverse.vector(vector()), inverse.normal(vector())));
         black_box((transform.ray(&ray()), transform.bounds(&aabb()), ray().at(float())));
     }

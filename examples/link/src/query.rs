@@ -3,11 +3,14 @@
 use core::hint::black_box;
 
 use hitscan::{
-    Accelerator, Arena, Hit, KdTree, List, Mesh, Primitives, Scene, accel::Bounded, kdtree::Options,
-    primitives::Spheres,
+    Accelerator, Arena, Hit, Instance, Instances, KdTree, List, Mesh, Primitives, Scene,
+    accel::{Bounded, Hierarchy},
+    geometry::Transform,
+    kdtree::Options,
+    primitives::{Order, Proximity, Renumbering, Reordered, Spheres},
 };
 
-use crate::input::{ray, some, sphere, vector, word};
+use crate::input::{float, matrix, ray, some, sphere, vector, word};
 
 /// Casts rays at meshes, spheres and both together, with and without a tree.
 pub fn all() {
@@ -19,18 +22,50 @@ pub fn all() {
     with(&mesh);
     with(&spheres);
     with(&(mesh, spheres));
+    let (mut numbers, mut places) = (None, None);
+    let orders = (Order::Wide(some(word, &mut numbers)), Order::Wide(some(word, &mut places)));
+    if let Ok(numbers) = Renumbering::new(orders.0, orders.1)
+        && let Ok(reordered) = Reordered::new(mesh, numbers)
+    {
+        with(&reordered);
+    }
 }
 
-fn with<P: Primitives>(primitives: &P) {
+fn with<P: Proximity>(primitives: &P) {
     if let Ok(list) = List::new(primitives) {
         cast(Scene::new(list, primitives));
         cast(Scene::new(Bounded::new((sphere(), list.bounds()), list), primitives));
+        near(Scene::new(list, primitives));
+        if let Ok(scene) = Scene::new(list, primitives) {
+            placed(scene);
+        }
     }
     let mut memory = [0; 1024];
     if let Ok(tree) = KdTree::build(primitives, &mut Arena::new(black_box(memory.as_mut_slice())), &Options::default())
     {
         cast(Scene::new(tree, primitives));
+        near(Scene::new(tree, primitives));
     }
+}
+
+fn placed<A: Hierarchy, P: Proximity>(scene: Scene<A, P>) {
+    let Ok(transform) = Transform::new(matrix(), vector()) else { return };
+    let (scenes, mut places) = ([scene], [Instance::new(word(), transform)]);
+    let Ok(instances) = Instances::place(black_box(&scenes), black_box(&mut places)) else { return };
+    if let Ok(similar) = instances.similar()
+        && let Ok(list) = List::new(&similar)
+    {
+        cast(Scene::new(list, similar));
+        near(Scene::new(list, similar));
+    }
+}
+
+fn near<A: Hierarchy, P: Proximity, E>(scene: Result<Scene<A, P>, E>) {
+    let Ok(scene) = scene else { return };
+    black_box(scene.nearest_point(vector(), float()));
+    black_box(scene.nearest_point_where(vector(), float(), |number| number != word()));
+    black_box(scene.any_overlap(&sphere()));
+    scene.overlaps(&sphere()).for_each(|nearest| _ = black_box(nearest));
 }
 
 fn cast<A: Accelerator, P: Primitives, E>(scene: Result<Scene<A, P>, E>) {
