@@ -102,7 +102,8 @@ impl fmt::Display for Difference {
     }
 }
 
-fn answer(hit: HitRecord) -> String {
+/// A hit in words.
+pub fn answer(hit: HitRecord) -> String {
     match hit.is_miss() {
         true => "miss".to_owned(),
         false => format!("{} at t = {}", hit.primitive, hit.t),

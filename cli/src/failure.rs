@@ -20,6 +20,9 @@ pub enum Failure {
     /// An output could not be written.
     #[error(transparent)]
     Output(#[from] OutputError),
+    /// Two structures answer the same rays differently: what this program promises not to happen.
+    #[error("{0}: the answers should be equal bit for bit, please report this with the mesh and the rays")]
+    Disagreement(String),
     /// Anything else.
     #[error("{what}: {mend}")]
     Other {
@@ -36,11 +39,19 @@ impl Failure {
         Failure::Other { what: what.to_string(), mend: mend.to_string() }
     }
 
+    /// The same, if two structures disagree, with the mesh over which they do.
+    pub fn about(self, mesh: &str) -> Self {
+        match self {
+            Failure::Disagreement(what) => Failure::Disagreement(format!("{mesh}: {what}")),
+            other => other,
+        }
+    }
+
     /// Prints the failure and gives the code to exit with.
     pub fn report(&self) -> ExitCode {
         // Standard error may be closed; then there is nobody left to tell, and no reason to panic.
         let _ = writeln!(io::stderr(), "hitscan: {self}");
-        ExitCode::from(2)
+        ExitCode::from(if matches!(self, Failure::Disagreement(_)) { 1 } else { 2 })
     }
 }
 

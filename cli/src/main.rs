@@ -4,6 +4,7 @@
 //! not at all.
 
 mod commands;
+mod compare;
 mod difference;
 mod failure;
 mod hits;
@@ -15,6 +16,7 @@ mod progress;
 mod rays;
 mod scene;
 mod stage;
+mod trial;
 mod units;
 
 use std::{

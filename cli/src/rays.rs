@@ -5,6 +5,8 @@
 
 use std::path::Path;
 
+use hitscan::Ray;
+
 use crate::input::{self, InputError};
 #[cfg(test)]
 use crate::output::{OutputError, write_atomically};
@@ -26,6 +28,12 @@ impl RayRecord {
     /// A ray without an end.
     pub fn new(origin: [f32; 3], direction: [f32; 3]) -> Self {
         RayRecord { origin, direction, t_min: 0.0, t_max: f32::INFINITY }
+    }
+}
+
+impl From<&RayRecord> for Ray {
+    fn from(ray: &RayRecord) -> Self {
+        Ray::new(ray.origin.into(), ray.direction.into()).starting_at(ray.t_min).up_to(ray.t_max)
     }
 }
 

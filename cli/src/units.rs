@@ -56,6 +56,18 @@ pub fn parse_bytes(text: &str) -> Result<usize, String> {
     }
 }
 
+/// Reads a count: `1000`, `64k`, `4M`; k and M count in 1000s.
+pub fn parse_count(text: &str) -> Result<u32, String> {
+    let (digits, unit) = match text.strip_suffix(['k', 'K']) {
+        Some(digits) => (digits, 1.0e3),
+        None => text.strip_suffix(['m', 'M']).map_or((text, 1.0), |digits| (digits, 1.0e6)),
+    };
+    match digits.parse::<f64>().map(|number| number * unit) {
+        Ok(count) if (1.0..1.0e9).contains(&count) => Ok(count as u32),
+        _ => Err("give a count such as 1000, 64k or 4M".to_owned()),
+    }
+}
+
 /// A count with its thousands apart: `1,234,567`.
 pub fn count(number: impl TryInto<u64>) -> String {
     let digits = number.try_into().unwrap_or(u64::MAX).to_string();
@@ -103,6 +115,14 @@ mod tests {
         assert_eq!(parse_bytes("1.5M"), Ok(1_572_864));
         for bad in ["", "K", "-1K", "64Q", "nan", "inf", "0", "1e99"] {
             assert!(parse_bytes(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn counts_have_units() {
+        assert_eq!(["7", "64k", "1.5K", "4M"].map(|text| parse_count(text).unwrap()), [7, 64_000, 1500, 4_000_000]);
+        for bad in ["", "k", "0", "-1", "4G", "nan", "inf", "9999M"] {
+            assert!(parse_count(bad).is_err(), "{bad}");
         }
     }
 

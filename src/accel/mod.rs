@@ -5,6 +5,7 @@
 
 mod bounded;
 pub mod bvh;
+mod counted;
 pub mod grid;
 mod hierarchy;
 pub mod kdtree;
@@ -18,6 +19,7 @@ mod structure;
 
 pub use bounded::{Bounded, BoundedTraversal};
 pub use bvh::Bvh;
+pub use counted::{Counted, CountedTraversal};
 pub use grid::Grid;
 pub use hierarchy::{Cell, Hierarchy, Inside, MAX_LEVELS};
 pub use kdtree::KdTree;

@@ -3,6 +3,7 @@
 //! Structures know boxes and numbers; primitives know shapes. Implement [`Primitives`] for your own type and every
 //! structure, query and renderer works on it; the data never carries a trace of the structure.
 
+mod counted;
 mod from_fn;
 mod hit;
 mod mesh;
@@ -12,6 +13,7 @@ mod reordered;
 mod spheres;
 mod surface;
 
+pub use counted::Counted;
 pub use from_fn::{FromFn, from_fn};
 pub use hit::{Hit, Span};
 pub use mesh::{Indices, Mesh, MeshError, Sides};

@@ -6,7 +6,7 @@ use std::{
 
 use hitscan::{
     Mesh,
-    accel::kdtree,
+    accel::Structure,
     asset::{Asset, Kind},
     bake::Baker,
 };
@@ -15,7 +15,7 @@ use super::print;
 use crate::{
     failure::{self, Failure},
     output::{self, write_atomically},
-    scene::{Built, Geometry, Preset, Source, Structure},
+    scene::{Built, Choice, Geometry, Preset, Shape, Source},
     units::{count, parse_bytes},
 };
 
@@ -31,9 +31,8 @@ pub struct Bake {
     /// Asset to write; - for standard output
     #[arg(short, long, value_name = "FILE", default_value = "scene.hits")]
     output: PathBuf,
-    /// Structure over the triangles: auto, list or kdtree
-    #[arg(short, long, value_name = "NAME", default_value = "kdtree")]
-    structure: Structure,
+    #[arg(short, long, value_name = "NAME", default_value = "kdtree", help = Choice::help("triangles"))]
+    structure: Choice,
     /// What the structure is tuned for
     #[arg(short, long, value_name = "PRESET", default_value = "balanced")]
     preset: Preset,
@@ -51,18 +50,17 @@ impl Bake {
             return Err(Failure::new(what, "name the mesh it was made from"));
         };
         let mesh = source.view(&self.model)?.mesh;
-        let bare = bake(&mesh, geometry, None)?.len() * 4;
-        let mut options = self.preset.kd_options();
-        if let Some(most) = self.fit {
-            options = options.fit(room(most, bare)?);
-        }
-        let built = Built::with_options(&mesh, self.structure, self.preset, &options)?;
-        let words = bake(&mesh, geometry, Some(&built))?;
+        let bare = bake(&mesh, geometry, None).len() * 4;
+        let most = self.fit.map(|most| room(most, bare)).transpose()?;
+        let built = Built::within(&mesh, self.structure, self.preset, most)?;
+        let structure = built.structure(&mesh)?;
+        let words = bake(&mesh, geometry, Some(structure));
         if let Some(most) = self.fit.filter(|most| words.len() * 4 > *most) {
-            return Err(too_small(most, words.len() * 4));
+            let what = format!("--fit {most}: with this structure ({}) it takes {} bytes", built.name, words.len() * 4);
+            return Err(Failure::new(what, "allow more bytes, or choose another structure, such as kdtree"));
         }
         write_atomically(&self.output, |file| words.iter().try_for_each(|word| file.write_all(&word.to_le_bytes())))?;
-        let table = table(&words, &built, geometry.len(), &self.output)?;
+        let table = table(&words, &built, &structure, geometry.len(), &self.output)?;
         if self.output == Path::new("-") {
             failure::note(&table);
         } else {
@@ -84,35 +82,41 @@ fn too_small(most: usize, least: usize) -> Failure {
     Failure::new(what, "allow more bytes, or simplify the mesh")
 }
 
-fn bake(mesh: &Mesh<'_>, geometry: &Geometry, built: Option<&Built>) -> Result<Vec<u32>, Failure> {
+fn bake(mesh: &Mesh<'_>, geometry: &Geometry, structure: Option<Structure<'_>>) -> Vec<u32> {
     let mut baker = Baker::new().mesh(mesh);
-    if let Some(tree) = built.map(Built::tree).transpose()?.flatten() {
-        baker = baker.structure(tree);
+    if let Some(structure) = structure {
+        baker = baker.structure(structure);
     }
     if !geometry.palette.materials.is_empty() {
         baker = baker.materials(&geometry.palette.materials, geometry.palette.as_numbers());
     }
-    Ok(baker.finish())
+    baker.finish()
 }
 
 /// The bytes by what they are for, and the worst case of a ray.
-fn table(words: &[u32], built: &Built, triangles: usize, output: &Path) -> Result<String, Failure> {
-    let (mut geometry, mut structure, mut materials) = (0, 0, 0);
+fn table(
+    words: &[u32],
+    built: &Built,
+    structure: &Structure<'_>,
+    triangles: usize,
+    output: &Path,
+) -> Result<String, Failure> {
+    let (mut geometry, mut tree, mut materials) = (0, 0, 0);
     let asset = Asset::from_words(words).map_err(|error| Failure::new(error, "report this as a bug"))?;
     for section in asset.sections() {
         let bytes = section.words.len() * 4;
         match section.kind {
             Kind::Vertices | Kind::NarrowIndices | Kind::WideIndices => geometry += bytes,
             Kind::Materials | Kind::MaterialNumbers => materials += bytes,
-            _ => structure += bytes,
+            _ => tree += bytes,
         }
     }
     let total = words.len() * 4;
     let rows = [
         ("geometry", geometry),
-        ("structure", structure),
+        ("structure", tree),
         ("materials", materials),
-        ("header and padding", total - geometry - structure - materials),
+        ("header and padding", total - geometry - tree - materials),
         ("total", total),
     ];
     let mut text = format!(
@@ -128,12 +132,14 @@ fn table(words: &[u32], built: &Built, triangles: usize, output: &Path) -> Resul
         let _ = writeln!(text, "{what:<20}{:>14}{:>14.2}", count(bytes), bytes as f64 / triangles as f64);
     }
     let _ = writeln!(text, "structure: {}, {}", built.name, built.time());
-    let _ = match built.tree()? {
-        Some(tree) => {
-            let (depth, nodes) = (tree.depth(), count(tree.node_count()));
-            writeln!(text, "worst case of a ray: depth {depth} (the stack holds {}), {nodes} nodes", kdtree::MAX_DEPTH)
-        }
-        None => writeln!(text, "worst case of a ray: {} triangles tested", count(triangles)),
+    if let Some(why) = &built.why {
+        let _ = writeln!(text, "chosen because: {why}");
+    }
+    let _ = if structure.kind().is_some() {
+        let Shape { depth, nodes, .. } = Shape::of(structure);
+        writeln!(text, "worst case of a ray: depth {depth}, {} nodes", count(nodes))
+    } else {
+        writeln!(text, "worst case of a ray: {} triangles tested", count(triangles))
     };
     Ok(text)
 }

@@ -66,7 +66,7 @@ enum Query {
 
 impl Query {
     fn ask(self, scene: &dyn Queries, ray: &RayRecord) -> HitRecord {
-        let ray = Ray::new(ray.origin.into(), ray.direction.into()).starting_at(ray.t_min).up_to(ray.t_max);
+        let ray = Ray::from(ray);
         match self {
             Self::Closest => scene.closest_hit(&ray, 0).map_or(HitRecord::MISS, record),
             Self::Any if scene.any_hit(&ray, 0) => HitRecord { t: 0.0, primitive: 0 },

@@ -1,19 +1,20 @@
 use std::{path::PathBuf, process::ExitCode};
 
-use hitscan::{Primitives, asset::Asset, geometry::Aabb};
+use hitscan::{Primitives, asset::Asset, geometry::Aabb, primitives::Indices};
 
 use super::{line, print};
 use crate::{
     failure::Failure,
     progress::Progress,
-    scene::{Anatomy, Built, Source, StructureArgs, View},
+    scene::{Anatomy, Built, Instancing, Shape, Source, StructureArgs, View},
     units::count,
 };
 
 /// Describe a mesh or an asset
 ///
-/// Prints counts, bounds, whether it is closed, triangles without area and duplicates, the bytes of an asset's sections, and
-/// the depth and expected cost of the structure, which is built first for a mesh.
+/// Prints counts, bounds, whether it is closed, triangles without area and duplicates, the depth and expected cost of the
+/// structure, which is built first for a mesh, triangles and bytes with and without instancing (glTF can place a mesh
+/// several times), and the bytes of an asset's sections.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Example: hitscan info bunny.obj.gz")]
 pub struct Info {
@@ -35,12 +36,45 @@ impl Info {
 
         let mut text = format!("{}\n", self.model.display());
         describe_mesh(&mut text, &view, &anatomy);
-        describe_structure(&mut text, &built, anatomy.triangles)?;
+        describe_structure(&mut text, &built, &view)?;
+        self.describe_instancing(&mut text, &source, &built, &view)?;
         if let Source::Asset(words) = &source {
             describe_sections(&mut text, words);
         }
         print(&text)?;
         Ok(ExitCode::SUCCESS)
+    }
+}
+
+impl Info {
+    /// What there is once and how often it is placed, and the bytes of both ways to keep it.
+    fn describe_instancing(
+        &self,
+        text: &mut String,
+        source: &Source,
+        built: &Built,
+        view: &View<'_>,
+    ) -> Result<(), Failure> {
+        let placed = view.mesh.len();
+        let instancing = match source {
+            Source::Model(geometry) => {
+                Instancing::of(geometry, self.structure.structure.unwrap_or_default(), self.structure.preset)?
+            }
+            Source::Asset(_) => None,
+        };
+        let corner = if matches!(view.mesh.indices(), Indices::Narrow(_)) { 2 } else { 4 };
+        let flat = size_of_val(view.mesh.vertices()) + placed as usize * 3 * corner + built.bytes();
+        let (unique, bytes) = match instancing {
+            None => (format!("{}, each placed once", count(placed)), flat),
+            Some(Instancing { parts, placements, unique, bytes }) => {
+                (format!("{} in {parts} parts, placed {} times", count(unique), count(placements)), bytes)
+            }
+        };
+        line(text, "unique triangles", unique);
+        line(text, "placed triangles", count(placed));
+        line(text, "bytes as placed", format!("{} of geometry and structure", count(flat)));
+        line(text, "bytes as instances", count(bytes));
+        Ok(())
     }
 }
 
@@ -61,17 +95,23 @@ fn describe_mesh(text: &mut String, view: &View<'_>, anatomy: &Anatomy) {
     line(text, "duplicates", count(duplicate));
 }
 
-fn describe_structure(text: &mut String, built: &Built, primitives: usize) -> Result<(), Failure> {
-    line(text, "structure", built.describe(primitives));
-    if let Some(tree) = built.tree()? {
-        let (nodes, tests) = tree.expected_work();
-        line(text, "nodes", count(tree.node_count()));
-        line(text, "references", count(tree.reference_count()));
-        line(text, "depth", tree.depth());
-        line(text, "expected per ray", format!("{nodes:.1} nodes, {tests:.1} tests, if nothing is hit"));
-    } else {
-        line(text, "expected per ray", format!("{} tests", count(primitives)));
+fn describe_structure(text: &mut String, built: &Built, view: &View<'_>) -> Result<(), Failure> {
+    let primitives = view.mesh.len();
+    line(text, "structure", built.describe(primitives as usize));
+    if let Some(why) = &built.why {
+        line(text, "chosen because", why);
     }
+    let structure = built.structure(&view.mesh)?;
+    if structure.kind().is_none() {
+        line(text, "expected per ray", format!("{} tests", count(primitives)));
+        return Ok(());
+    }
+    let shape = Shape::of(&structure);
+    line(text, "nodes", count(shape.nodes));
+    line(text, "references", count(shape.references));
+    line(text, "depth", shape.depth);
+    let (nodes, tests) = (shape.expected_nodes, shape.expected_tests);
+    line(text, "expected per ray", format!("{nodes:.1} nodes, {tests:.1} tests, if nothing is hit"));
     Ok(())
 }
 

@@ -2,6 +2,7 @@
 
 mod bake;
 mod cast;
+mod compare;
 mod diff;
 mod info;
 mod render;
@@ -23,12 +24,13 @@ pub enum Command {
     Bake(bake::Bake),
     Info(info::Info),
     Cast(cast::Cast),
+    Compare(compare::Compare),
     Diff(diff::Diff),
 }
 
 impl Command {
     /// Their names, in order.
-    pub const NAMES: [&'static str; 5] = ["render", "bake", "info", "cast", "diff"];
+    pub const NAMES: [&'static str; 6] = ["render", "bake", "info", "cast", "compare", "diff"];
 
     /// Does it; the code to exit with.
     pub fn run(&self) -> Result<ExitCode, Failure> {
@@ -37,6 +39,7 @@ impl Command {
             Self::Bake(bake) => bake.run(),
             Self::Info(info) => info.run(),
             Self::Cast(cast) => cast.run(),
+            Self::Compare(compare) => compare.run(),
             Self::Diff(diff) => diff.run(),
         }
     }

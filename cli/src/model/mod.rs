@@ -14,6 +14,7 @@ mod stl;
 
 use std::fs;
 use std::io::{self, Read};
+use std::ops::Range;
 use std::path::Path;
 
 pub use error::{Fault, LoadError};
@@ -33,8 +34,21 @@ pub struct Model {
     pub materials: Vec<Material>,
     /// An index into `materials` per triangle, or empty when there is one material.
     pub material_ids: Vec<u16>,
+    /// Which part of the file each run of triangles is, and where; none if the format places nothing.
+    pub placements: Vec<Placement>,
     /// What was wrong in the file without spoiling its geometry, one line each.
     pub warnings: Vec<String>,
+}
+
+/// A part of a file where it is placed: the same part may be there several times.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Placement {
+    /// The part's number in the file.
+    pub part: usize,
+    /// Its vertices in the model.
+    pub vertices: Range<usize>,
+    /// Its triangles in the model.
+    pub triangles: Range<usize>,
 }
 
 impl Model {

@@ -1,16 +1,25 @@
 //! What rays are cast at: a mesh file, a baked asset or the built-in scene, under the structure that was asked for.
 
 mod anatomy;
+mod built;
 pub mod builtin;
+mod choice;
+mod instancing;
 mod palette;
+mod preset;
 mod queries;
+mod shape;
 mod smooth;
 mod source;
-mod structure;
 
 pub use anatomy::Anatomy;
+pub(crate) use built::unwrapped;
+pub use built::{Built, broken};
+pub use choice::{Choice, Named, StructureArgs};
+pub use instancing::Instancing;
 pub use palette::Palette;
+pub use preset::Preset;
 pub use queries::Queries;
+pub use shape::Shape;
 pub use smooth::Smooth;
 pub use source::{Geometry, Source, View};
-pub use structure::{Built, Preset, Structure, StructureArgs};

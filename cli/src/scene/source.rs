@@ -1,18 +1,19 @@
 use std::{fs::File, io::Read, path::Path};
 
 use hitscan::{
-    KdTree, Mesh,
-    asset::{Asset, Kind},
+    Error, Mesh,
+    accel::Structure,
+    asset::{Asset, AssetError, Kind},
     glam::Vec3,
     primitives::Indices,
     render::Materials,
 };
 
-use super::{Built, Palette, Preset, Structure};
+use super::{Built, Choice, Palette, Preset};
 use crate::{
     failure::{Failure, warn},
     input,
-    model::{Fault, LoadError, Model},
+    model::{Fault, LoadError, Model, Placement},
     progress::Progress,
 };
 
@@ -39,6 +40,8 @@ pub struct Geometry {
     pub narrow: Vec<[u16; 3]>,
     /// Materials.
     pub palette: Palette,
+    /// Which part of the file each run of triangles is; none if the format places nothing.
+    pub placements: Vec<Placement>,
     /// Whether y is up by the definition of the file's format.
     pub y_up: bool,
 }
@@ -51,7 +54,7 @@ impl Geometry {
             narrow = wide.iter().map(|corners| corners.map(|vertex| vertex as u16)).collect();
             wide = Vec::new();
         }
-        Self { vertices, wide, narrow, palette, y_up: false }
+        Self { vertices, wide, narrow, palette, placements: Vec::new(), y_up: false }
     }
 
     fn load(path: &Path) -> Result<Self, Failure> {
@@ -63,7 +66,7 @@ impl Geometry {
         let palette = Palette::of_model(&model.materials, model.material_ids);
         let name = path.to_string_lossy().to_ascii_lowercase();
         let y_up = [".gltf", ".glb", ".gltf.gz", ".glb.gz"].iter().any(|ending| name.ends_with(ending));
-        Ok(Self { y_up, ..Self::new(vertices, model.triangles, palette) })
+        Ok(Self { y_up, placements: model.placements, ..Self::new(vertices, model.triangles, palette) })
     }
 
     /// How many triangles there are.
@@ -71,11 +74,20 @@ impl Geometry {
         self.wide.len() + self.narrow.len()
     }
 
+    /// The bytes of vertices and corners.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&*self.vertices) + size_of_val(&*self.wide) + size_of_val(&*self.narrow)
+    }
+
+    /// The corners of the triangles.
+    pub fn indices(&self) -> Indices<'_> {
+        if self.wide.is_empty() { Indices::Narrow(&self.narrow) } else { Indices::Wide(&self.wide) }
+    }
+
     /// The triangles, checked.
     pub fn mesh(&self) -> Result<Mesh<'_>, Failure> {
-        let indices = if self.wide.is_empty() { Indices::Narrow(&self.narrow) } else { Indices::Wide(&self.wide) };
         let mend = "scale the mesh or move it nearer to the origin";
-        Mesh::new(&self.vertices, indices).map_err(|error| Failure::new(error, mend))
+        Mesh::new(&self.vertices, self.indices()).map_err(|error| Failure::new(error, mend))
     }
 }
 
@@ -87,7 +99,7 @@ pub struct View<'a> {
     /// Their materials, if it names any.
     pub materials: Option<Materials<'a>>,
     /// The structure of an asset, if it has one.
-    pub tree: Option<KdTree<'a>>,
+    pub structure: Option<Structure<'a>>,
     /// Whether y is up by definition.
     pub y_up: bool,
     /// What it took to check the asset.
@@ -133,7 +145,7 @@ impl Source {
                 let palette = &geometry.palette;
                 let materials = (!palette.materials.is_empty()).then(|| palette.as_materials());
                 let mesh = geometry.mesh().map_err(name)?;
-                Ok(View { mesh, materials, tree: None, y_up: geometry.y_up, seconds: 0.0 })
+                Ok(View { mesh, materials, structure: None, y_up: geometry.y_up, seconds: 0.0 })
             }
             Self::Asset(words) => {
                 let progress = Progress::spinner("checking the asset …");
@@ -142,8 +154,13 @@ impl Source {
                 let has = |kind| asset.sections().any(|section| section.kind == kind);
                 let mesh = asset.read().map_err(damaged)?;
                 let materials = has(Kind::Materials).then(|| asset.read().map_err(damaged)).transpose()?;
-                let tree = has(Kind::KdTree).then(|| asset.read().map_err(damaged)).transpose()?;
-                Ok(View { mesh, materials, tree, y_up: false, seconds: progress.finish() })
+                // An asset without one is a list.
+                let structure = match asset.read() {
+                    Ok(structure) => Some(structure),
+                    Err(Error::Asset(AssetError::Missing { .. })) => None,
+                    Err(error) => return Err(damaged(error)),
+                };
+                Ok(View { mesh, materials, structure, y_up: false, seconds: progress.finish() })
             }
         }
     }
@@ -151,10 +168,10 @@ impl Source {
 
 impl View<'_> {
     /// The structure that was asked for: the asset's own unless another was named.
-    pub fn build(&self, structure: Option<Structure>, preset: Preset) -> Result<Built, Failure> {
-        match (structure, &self.tree) {
-            (None, Some(tree)) => Ok(Built::of_asset(tree, self.seconds)),
-            _ => Built::new(&self.mesh, structure.unwrap_or_default(), preset),
+    pub fn build(&self, choice: Option<Choice>, preset: Preset) -> Result<Built, Failure> {
+        match (choice, &self.structure) {
+            (None, Some(structure)) => Ok(Built::of_asset(structure, self.seconds)),
+            _ => Built::new(&self.mesh, choice.unwrap_or_default(), preset),
         }
     }
 }

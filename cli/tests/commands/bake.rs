@@ -3,7 +3,7 @@
 use crate::folder::{Folder, TETRAHEDRON};
 
 /// A waved square of `side` x `side` x 2 triangles.
-fn waves(side: usize) -> String {
+pub fn waves(side: usize) -> String {
     let mut text = String::new();
     for (y, x) in (0..=side).flat_map(|y| (0..=side).map(move |x| (y, x))) {
         let (x, y) = (x as f32, y as f32);
@@ -81,3 +81,26 @@ fn meshes_and_assets_are_described() {
     }
     has(&text, "total", &format!("{} bytes", folder.read("asset.hits").len()));
 }
+
+#[test]
+fn what_is_placed_twice_is_known_as_such() {
+    let folder = Folder::new();
+    folder.write("twice.gltf", TWICE);
+    let text = folder.succeed("info twice.gltf");
+    for line in ["unique triangles   2 in 1 parts, placed 3 times", "placed triangles   6"] {
+        assert!(text.contains(line), "{line}: {text}");
+    }
+    let text = folder.succeed("info tetrahedron.obj");
+    for line in ["unique triangles   4, each placed once", "placed triangles   4", "bytes as instances 72"] {
+        assert!(text.contains(line), "{line}: {text}");
+    }
+}
+
+/// A square in three places.
+const TWICE: &str = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0,1,2]}],
+    "nodes":[{"mesh":0},{"mesh":0,"translation":[2,0,0]},{"mesh":0,"scale":[-1,3,3]}],
+    "meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],
+    "buffers":[{"byteLength":60,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAACAPwAAgD8AAAAAAAAAAAAAgD8AAAAAAAABAAIAAAACAAMA"}],
+    "bufferViews":[{"buffer":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":12}],
+    "accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3","min":[0,0,0],"max":[1,1,0]},
+    {"bufferView":1,"componentType":5123,"count":6,"type":"SCALAR"}]}"#;

@@ -5,8 +5,13 @@ use std::process::Stdio;
 use crate::folder::{Folder, TETRAHEDRON};
 
 /// Each subcommand at work on the model `{}`.
-const READERS: [&str; 4] =
-    ["render {} --size 8x8 --samples 1 -o out.png", "bake {} -o out.hits", "info {}", "cast {} one.rays -o out.bin"];
+const READERS: [&str; 5] = [
+    "render {} --size 8x8 --samples 1 -o out.png",
+    "bake {} -o out.hits",
+    "info {}",
+    "cast {} one.rays -o out.bin",
+    "compare {} -n 100 --rounds 1",
+];
 
 /// A folder with one ray, too.
 fn folder() -> Folder {
@@ -151,10 +156,11 @@ fn the_command_line_itself_is_checked() {
         "bake",
         "info a b",
         "bake a --fit 64Q",
+        "compare a --growth=1k",
     ] {
         assert!(folder.refuse(arguments).contains("--help"), "{arguments}");
     }
-    for name in ["", "render ", "bake ", "info ", "cast ", "diff "] {
+    for name in ["", "render ", "bake ", "info ", "cast ", "compare ", "diff "] {
         let text = folder.succeed(&format!("{name}--help"));
         assert!(text.contains("Usage: hitscan"), "{text}");
         assert!(text.contains("Example") || name.is_empty(), "{text}");

@@ -2,6 +2,7 @@
 
 mod bake;
 mod cast;
+mod compare;
 mod failures;
 mod folder;
 mod render;

@@ -12,7 +12,7 @@ use glam::{DMat4, DVec3};
 use gltf::accessor::{DataType, Dimensions};
 use gltf::mesh::Mode;
 
-use super::{Fault, LoadError, Material, Model};
+use super::{Fault, LoadError, Material, Model, Placement};
 use buffer::load_buffer;
 use shading::shading;
 
@@ -44,8 +44,13 @@ pub(super) fn read(bytes: &[u8], folder: &Path) -> Result<Model, LoadError> {
             visits_left.checked_sub(1).ok_or_else(|| Fault::Malformed("the nodes do not form a tree".to_owned()))?;
         let local = node.transform().matrix().map(|column| column.map(f64::from));
         let world = parent * DMat4::from_cols_array_2d(&local);
-        for primitive in node.mesh().iter().flat_map(|mesh| mesh.primitives()) {
-            push_primitive(&mut model, &primitive, &buffers, world)?;
+        if let Some(mesh) = node.mesh() {
+            let (vertex, triangle) = (model.vertices.len(), model.triangles.len());
+            for primitive in mesh.primitives() {
+                push_primitive(&mut model, &primitive, &buffers, world)?;
+            }
+            let (vertices, triangles) = (vertex..model.vertices.len(), triangle..model.triangles.len());
+            model.placements.push(Placement { part: mesh.index(), vertices, triangles });
         }
         let children: Vec<_> = node.children().map(|child| (child, world)).collect();
         stack.extend(children.into_iter().rev());

@@ -54,6 +54,8 @@ fn nodes_place_their_meshes() {
         assert_eq!(model.vertices[2], [1.0, 1.0, 5.0]);
         assert_eq!(model.vertices[6], [3.0, 3.0, 5.0]);
         assert_eq!(model.triangles, [[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7]]);
+        let placed = |vertices, triangles| Placement { part: 0, vertices, triangles };
+        assert_eq!(model.placements, [placed(0..4, 0..2), placed(4..8, 2..4)]);
         let gold = &model.materials[0];
         assert_eq!((gold.name.as_str(), gold.diffuse), ("gold", [0.0; 3]));
         assert_eq!((gold.specular, gold.reflectivity), ([1.0, 0.5, 0.0], 0.75));

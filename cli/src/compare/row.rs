@@ -1,0 +1,70 @@
+use hitscan::{Mesh, render::Caster};
+
+use crate::{
+    failure::Failure,
+    scene::{Built, Named, Preset, unwrapped},
+    trial::{self, Counts},
+};
+
+/// A line of the comparison: a name and a way to make a scene of a mesh.
+#[derive(Clone, Copy, Debug)]
+pub struct Row {
+    /// What it is called.
+    pub name: &'static str,
+    /// The structure that it is, or that something is put around.
+    pub named: &'static Named,
+    /// Builds it.
+    make: Make,
+}
+
+/// What builds a row.
+type Make = fn(&Mesh<'_>, &'static Named, Preset) -> Result<Box<dyn Made>, Failure>;
+
+/// What a row has built.
+pub trait Made {
+    /// Its bytes, those of the mesh not counted.
+    fn bytes(&self) -> usize;
+
+    /// The scene of the mesh that it was built over, ready for rays; what they take is added to `counts`, if there are any.
+    fn scene<'a>(&'a self, mesh: Mesh<'a>, counts: Option<&'a Counts>) -> Result<Box<dyn Caster + 'a>, Failure>;
+}
+
+/// A structure as it is.
+impl Made for Built {
+    fn bytes(&self) -> usize {
+        self.bytes()
+    }
+
+    fn scene<'a>(&'a self, mesh: Mesh<'a>, counts: Option<&'a Counts>) -> Result<Box<dyn Caster + 'a>, Failure> {
+        unwrapped!(self.structure(&mesh)?, structure => trial::scene(structure, mesh, counts))
+    }
+}
+
+impl Row {
+    /// What is put around structures: the name of the row, that of the structure, and how.
+    const AROUND: &[(&str, &str, Make)] = &[];
+
+    /// All rows: each structure, and behind it what is put around it.
+    pub fn all() -> Vec<Self> {
+        let plain = |named: &'static Named| Self {
+            name: named.name,
+            named,
+            make: |mesh, named, preset| Ok(Box::new(Built::named(mesh, named, preset, None)?)),
+        };
+        let around = |named: &'static Named| {
+            let rows = Self::AROUND.iter().filter(move |(_, inner, _)| *inner == named.name);
+            rows.map(move |&(name, _, make)| Self { name, named, make })
+        };
+        Named::ALL.iter().flat_map(|named| std::iter::once(plain(named)).chain(around(named))).collect()
+    }
+
+    /// Whether it is a structure with nothing around it that `auto` may choose.
+    pub fn is_candidate(&self) -> bool {
+        self.named.is_candidate && self.name == self.named.name
+    }
+
+    /// Builds it over a mesh.
+    pub fn make(&self, mesh: &Mesh<'_>, preset: Preset) -> Result<Box<dyn Made>, Failure> {
+        (self.make)(mesh, self.named, preset)
+    }
+}

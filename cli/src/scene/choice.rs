@@ -1,0 +1,176 @@
+use std::str::FromStr;
+
+use hitscan::accel::{
+    Plan,
+    kdtree::{self, Split},
+};
+
+use super::Preset;
+
+/// A structure that can be asked for by name.
+#[derive(Debug)]
+pub struct Named {
+    /// Its name on the command line.
+    pub name: &'static str,
+    /// How it is built.
+    plan: fn(Preset) -> Plan,
+    /// What visiting a node of it takes, in tests of a triangle: measured, rounded, the same on every machine, so that
+    /// what is recommended does not depend on the weather.
+    pub node_cost: f64,
+    /// Whether `auto` may choose it; the others are there to be compared with.
+    pub is_candidate: bool,
+}
+
+/// The options that a preset has for a structure.
+macro_rules! tuned {
+    ($preset:expr, $options:ty) => {
+        match $preset {
+            Preset::Small => <$options>::small(),
+            Preset::Balanced => <$options>::balanced(),
+            Preset::Fast => <$options>::fast(),
+        }
+    };
+}
+
+/// A kD-tree that is divided in this way.
+fn kd(preset: Preset, split: Split) -> Plan {
+    Plan::KdTree(kdtree::Options { split, ..tuned!(preset, kdtree::Options) })
+}
+
+impl Named {
+    /// All of them, the list first: answers and speeds are compared with its own.
+    pub const ALL: &[Self] = &[
+        Self { name: "list", plan: |_| Plan::List, node_cost: 0.0, is_candidate: false },
+        Self {
+            name: "kdtree-midpoint",
+            plan: |preset| kd(preset, Split::Midpoint),
+            node_cost: 0.5,
+            is_candidate: false,
+        },
+        Self { name: "kdtree-median", plan: |preset| kd(preset, Split::Median), node_cost: 0.5, is_candidate: false },
+        Self { name: "kdtree", plan: |preset| kd(preset, Split::Sah), node_cost: 0.5, is_candidate: true },
+    ];
+
+    /// What `auto` takes where trials would last too long.
+    const ASSUMED: &str = "kdtree";
+
+    /// Names that belong to structures of other versions.
+    const RESERVED: [&str; 1] = ["wide"];
+
+    /// The one of this name.
+    pub fn find(name: &str) -> Option<&'static Self> {
+        Self::ALL.iter().find(|named| named.name == name)
+    }
+
+    /// The list.
+    pub fn list() -> &'static Self {
+        &Self::ALL[0]
+    }
+
+    /// What is taken where nothing is tried.
+    pub fn assumed() -> &'static Self {
+        Self::find(Self::ASSUMED).unwrap_or(Self::list())
+    }
+
+    /// How it is built for a preset, within so many bytes if it can be made to fit.
+    pub fn plan(&self, preset: Preset, most: Option<usize>) -> Plan {
+        match ((self.plan)(preset), most) {
+            (Plan::KdTree(options), Some(bytes)) => Plan::KdTree(options.fit(bytes)),
+            (plan, _) => plan,
+        }
+    }
+
+    /// Its name and, if that makes a difference, the preset's.
+    pub fn title(&self, preset: Preset) -> String {
+        if (self.plan)(Preset::Small) == (self.plan)(Preset::Fast) {
+            return self.name.to_owned();
+        }
+        format!("{} {}", self.name, preset.name())
+    }
+}
+
+impl PartialEq for Named {
+    fn eq(&self, other: &Self) -> bool {
+        self.name == other.name
+    }
+}
+
+impl Eq for Named {}
+
+/// What is asked for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Choice {
+    /// What suits the primitives.
+    #[default]
+    Auto,
+    /// This one.
+    Named(&'static Named),
+}
+
+impl Choice {
+    /// The names that can be given.
+    fn names() -> String {
+        let names: Vec<&str> = Named::ALL.iter().map(|named| named.name).collect();
+        format!("auto, {}", names.join(", "))
+    }
+
+    /// What the help says of an option for a structure over `what`.
+    pub fn help(what: &str) -> String {
+        format!("Structure over the {what}: {}", Self::names())
+    }
+}
+
+impl FromStr for Choice {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match Named::find(text) {
+            Some(named) => Ok(Self::Named(named)),
+            None if text == "auto" => Ok(Self::Auto),
+            None => {
+                let known = Named::RESERVED.contains(&text);
+                let what = if known { "this version does not have it" } else { "unknown structure" };
+                Err(format!("{what}, choose one of {}", Self::names()))
+            }
+        }
+    }
+}
+
+/// The options that choose a structure.
+#[derive(Clone, Copy, Debug, clap::Args)]
+pub struct StructureArgs {
+    #[arg(short, long, value_name = "NAME", help = Choice::help("primitives") + " [default: the asset's own, or auto]")]
+    pub structure: Option<Choice>,
+    /// What the structure is tuned for
+    #[arg(short, long, value_name = "PRESET", default_value = "balanced")]
+    pub preset: Preset,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_known_reserved_or_refused() {
+        for named in Named::ALL {
+            assert_eq!(named.name.parse(), Ok(Choice::Named(named)));
+        }
+        assert_eq!("auto".parse(), Ok(Choice::Auto));
+        for name in Named::RESERVED {
+            let error = name.parse::<Choice>().unwrap_err();
+            assert!(error.starts_with("this version does not have it, choose one of auto, list, "), "{error}");
+        }
+        assert!("tree".parse::<Choice>().unwrap_err().starts_with("unknown structure"));
+    }
+
+    #[test]
+    fn names_are_unique_and_the_list_is_first() {
+        for (place, named) in Named::ALL.iter().enumerate() {
+            assert_eq!(Named::ALL.iter().position(|other| other == named), Some(place));
+        }
+        assert_eq!(Named::list().plan(Preset::Fast, None), Plan::List);
+        assert!(Named::assumed().is_candidate);
+        assert_eq!(Named::list().title(Preset::Fast), "list");
+        assert_eq!(Named::assumed().title(Preset::Fast), "kdtree fast");
+    }
+}
