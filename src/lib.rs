@@ -103,7 +103,9 @@ extern crate alloc;
 #[cfg(any(test, feature = "std"))]
 extern crate std;
 
-pub use accel::{Accelerator, Bvh, Grid, KdTree, List, Octree, Traversal, bvh, grid, kdtree, octree};
+pub use accel::{
+    Accelerator, Bvh, DualSplit, Grid, KdTree, List, Octree, Traversal, bvh, dualsplit, grid, kdtree, octree,
+};
 pub use arena::Arena;
 pub use error::Error;
 pub use geometry::{PreparedRay, Ray};

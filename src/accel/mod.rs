@@ -6,6 +6,7 @@
 mod bounded;
 pub mod bvh;
 mod counted;
+pub mod dualsplit;
 pub mod grid;
 mod hierarchy;
 pub mod kdtree;
@@ -20,6 +21,7 @@ mod structure;
 pub use bounded::{Bounded, BoundedTraversal};
 pub use bvh::Bvh;
 pub use counted::{Counted, CountedTraversal};
+pub use dualsplit::DualSplit;
 pub use grid::Grid;
 pub use hierarchy::{Cell, Hierarchy, Inside, MAX_LEVELS};
 pub use kdtree::KdTree;

@@ -1,8 +1,8 @@
 //! All structures as one type, for tools that let people choose.
 
 use super::{
-    Accelerator, Bvh, Cell, Grid, Hierarchy, Inside, KdTree, Leaf, List, Octree, Step, Traversal, bvh, grid, kdtree,
-    octree,
+    Accelerator, Bvh, Cell, DualSplit, Grid, Hierarchy, Inside, KdTree, Leaf, List, Octree, Step, Traversal, bvh,
+    dualsplit, grid, kdtree, octree,
 };
 use crate::{
     arena::Arena,
@@ -243,6 +243,8 @@ structures! {
     KdTree(kdtree::Options),
     /// A bounding volume hierarchy.
     Bvh(bvh::Options),
+    /// A dual-split tree.
+    DualSplit(dualsplit::Options),
 }
 
 impl From<List> for Structure<'_> {

@@ -3,9 +3,10 @@
 use core::hint::black_box;
 
 use hitscan::{
-    Accelerator, Arena, KdTree, List, Mesh, Primitives,
+    Accelerator, Arena, DualSplit, KdTree, List, Mesh, Primitives,
+    accel::{Hierarchy, Inside, Step, Traversal},
     asset::{Asset, Stored},
-    from_fn,
+    dualsplit, from_fn,
     kdtree::{Options, Split},
     primitives::Spheres,
     render::Materials,
@@ -34,7 +35,40 @@ fn with<P: Primitives, E>(primitives: &Result<P, E>) {
     arena.frame(|arena| tree(KdTree::build(primitives, arena, &options)));
     tree(KdTree::build(&(primitives, primitives), &mut arena, &options));
     tree(KdTree::build(primitives as &dyn Primitives, &mut arena, &options));
+    dual_split(primitives);
     black_box(arena.available());
+}
+
+fn dual_split<P: Primitives>(primitives: &P) {
+    let mut memory = [0; 1024];
+    let mut arena = Arena::new(black_box(memory.as_mut_slice()));
+    black_box(DualSplit::words(word() as usize));
+    let presets = [dualsplit::Options::small(), dualsplit::Options::balanced(), dualsplit::Options::fast()];
+    let preset = presets.get(word() as usize).copied().unwrap_or_default();
+    let options = match word() {
+        0 => preset,
+        _ => dualsplit::Options { leaf_size: word(), intersection_cost: float(), carve_threshold: float() },
+    };
+    let Ok(tree) = DualSplit::build(primitives, &mut arena, &options) else { return };
+    black_box((tree.depth(), tree.is_ordered(), tree.order().last(), tree.ordered_words().last()));
+    black_box(tree.ordered(&mut arena).is_ok());
+    black_box(DualSplit::open(tree.as_words()).is_ok());
+    let mut cell = tree.root();
+    while let Some(inside) = cell.map(|cell| tree.open(&cell)) {
+        cell = match inside {
+            Inside::Cells([left, _]) => left,
+            Inside::Leaf(leaf) => {
+                black_box(leaf.last());
+                None
+            }
+        };
+    }
+    let (mut budget, Some(ray)) = (word(), ray().prepare()) else { return };
+    let mut walk = tree.traverse(&ray);
+    while let Some(leaf) = walk.next_leaf(&ray, float()) {
+        black_box(leaf.last());
+    }
+    black_box(matches!(walk.step(&ray, float(), &mut budget), Step::Done));
 }
 
 fn options() -> Options {
@@ -71,6 +105,7 @@ fn assets() {
     for asset in [Asset::open(bytes), Asset::from_words(words)].into_iter().flatten() {
         asset.sections().for_each(|section| _ = black_box(section));
         read::<KdTree<'_>>(&asset);
+        read::<DualSplit<'_>>(&asset);
         read::<Mesh<'_>>(&asset);
         read::<Spheres<'_>>(&asset);
         read::<Materials<'_>>(&asset);

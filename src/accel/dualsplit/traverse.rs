@@ -1,0 +1,140 @@
+use super::{DualSplit, MAX_DEPTH, node::Head};
+use crate::{
+    accel::{Leaf, Step, Traversal, leaf::References},
+    geometry::{Lattice, PreparedRay, beyond, slack},
+    math::{greatest, least},
+};
+
+/// The walk through a [`DualSplit`]: front to back, a stack of ranges that wait.
+#[derive(Clone, Debug)]
+pub struct DualSplitTraversal<'a> {
+    nodes: &'a [u32],
+    references: References<'a>,
+    lattice: Lattice,
+    slack: f32,
+    /// The cell to go on with: the whole at first, after a pause the one before which it was; none behind a leaf.
+    next: Option<Cell>,
+    /// Far children, the nearest on top.
+    stack: heapless::Vec<Cell, MAX_DEPTH>,
+}
+
+/// The word at which a node begins, with the entry and exit of its implied box.
+#[derive(Clone, Copy, Debug)]
+struct Cell {
+    node: u32,
+    enter: f32,
+    exit: f32,
+}
+
+impl<'a> DualSplitTraversal<'a> {
+    #[inline]
+    pub(super) fn new(tree: &DualSplit<'a>, ray: &PreparedRay) -> Self {
+        // Not filled here, so that it is made where it stays: moving the stack would cost more than a hundred nodes.
+        let mut traversal = Self {
+            nodes: tree.nodes,
+            references: tree.references,
+            lattice: tree.lattice,
+            slack: 0.0,
+            next: None,
+            stack: heapless::Vec::new(),
+        };
+        if let Some((enter, exit)) = tree.bounds.interval(ray) {
+            let enter = greatest(enter, ray.ray().t_min);
+            let exit = least(exit, beyond(ray.ray().t_max));
+            traversal.slack = slack(enter);
+            traversal.next = if enter > exit { None } else { Some(Cell { node: 0, enter, exit }) };
+        }
+        traversal
+    }
+
+    /// The cell put aside last of those that begin before `end`.
+    #[inline(always)]
+    fn pop(&mut self, end: f32) -> Option<Cell> {
+        loop {
+            let cell = self.stack.pop()?;
+            if !(cell.enter > end) {
+                return Some(Cell { exit: least(cell.exit, end), ..cell });
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn advance<const BOUNDED: bool>(&mut self, ray: &PreparedRay, t_max: f32, budget: &mut u32) -> Step<Leaf<'a>> {
+        let (nodes, slack, end) = (self.nodes, self.slack, beyond(t_max));
+        // The cell at hand is in registers, not in `self`: that is a third of the instructions.
+        let Some(mut cell) = self.next.take().or_else(|| self.pop(end)) else { return Step::Done };
+        loop {
+            if BOUNDED {
+                if *budget == 0 {
+                    self.next = Some(cell);
+                    return Step::Paused;
+                }
+                *budget -= 1;
+            }
+            let Some(&word) = nodes.get(cell.node as usize) else { return Step::Done };
+            let head = Head::from_word(word);
+            let axis = head.axis_or_leaf();
+            if axis == Head::LEAF {
+                return Step::Leaf(Leaf::of(self.references, head.first(), head.count()));
+            }
+            let Some(&planes) = nodes.get(cell.node as usize + 1) else { return Step::Done };
+            // Comparisons are written so that NaN, the ray in a plane, visits.
+            let child = cell.node + 2;
+            if head.is_carve() {
+                cell.node = child;
+                for (head, plane) in [(head, planes & 0xffff), (head.turned(), planes >> 16)] {
+                    let axis = head.axis_or_leaf();
+                    let view = &ray.views[axis as usize];
+                    let distance = self.lattice.plane(axis, plane) - view.origin;
+                    if head.is_upper() == head.is_descended(ray.descending) {
+                        cell.enter = greatest(distance * view.entry, cell.enter);
+                    } else {
+                        cell.exit = least(distance * view.exit + slack, cell.exit);
+                    }
+                    if cell.enter > cell.exit {
+                        break;
+                    }
+                }
+                if cell.enter > cell.exit {
+                    match self.pop(end) {
+                        Some(next) => cell = next,
+                        None => return Step::Done,
+                    }
+                }
+                continue;
+            }
+            // The near child ends at the plane in the lower half, the far one begins at the upper.
+            let descended = head.is_descended(ray.descending);
+            let (planes, near, far) =
+                if descended { (planes.rotate_left(16), head.right(), child) } else { (planes, child, head.right()) };
+            let view = &ray.views[axis as usize];
+            let exit = (self.lattice.plane(axis, planes & 0xffff) - view.origin) * view.exit + slack;
+            if exit < cell.enter {
+                // The far child: as nearly all rays that miss the near one meet it, its plane need not be looked at.
+                cell.node = far;
+                continue;
+            }
+            let entry = (self.lattice.plane(axis, planes >> 16) - view.origin) * view.entry;
+            if !(entry > cell.exit) {
+                // Cannot fail: the tree is no deeper than the stack.
+                let _ = self.stack.push(Cell { node: far, enter: greatest(entry, cell.enter), exit: cell.exit });
+            }
+            cell = Cell { node: near, enter: cell.enter, exit: least(exit, cell.exit) };
+        }
+    }
+}
+
+impl<'a> Traversal for DualSplitTraversal<'a> {
+    type Leaf = Leaf<'a>;
+
+    fn next_leaf(&mut self, ray: &PreparedRay, t_max: f32) -> Option<Leaf<'a>> {
+        match self.advance::<false>(ray, t_max, &mut 0) {
+            Step::Leaf(leaf) => Some(leaf),
+            Step::Paused | Step::Done => None,
+        }
+    }
+
+    fn step(&mut self, ray: &PreparedRay, t_max: f32, budget: &mut u32) -> Step<Leaf<'a>> {
+        self.advance::<true>(ray, t_max, budget)
+    }
+}
