@@ -3,9 +3,9 @@ use crate::geometry::{Aabb, PreparedRay, Volume};
 
 /// A structure behind a volume: rays that miss the volume are not walked at all.
 ///
-/// Pays where most rays miss the object, and a sphere or a turned box fits it better than the box along the axes that every
-/// structure begins with; over a [`List`](super::List) any volume does. Two in a row, the cheaper one first, are a
-/// volume as well: `(sphere, obb)`.
+/// Over a [`List`](super::List) any volume pays. Other structures begin with the box along the axes themselves: there a
+/// sphere saves up to a third where most rays miss the object, and a turned box hardly anything unless it is much the
+/// smaller one. Two in a row, the cheaper one first, are a volume as well: `(sphere, obb)`.
 ///
 /// The volume must contain all certified primitives, and the whole bounds of all others; then the answers are, bit for
 /// bit, those of the structure itself ([`Volume::may_meet`]).

@@ -32,8 +32,8 @@ impl Obb {
         Self { center, axes, half_size }
     }
 
-    /// Whether the columns are orthonormal to within 2^-20, no size is negative, all are finite, and the middle is within
-    /// 2^127 of the origin along each axis.
+    /// Whether the columns are orthonormal to within 2^-20, no size is negative, all are finite, and the middle is
+    /// within 2^127 of the origin along each axis.
     #[must_use]
     pub fn is_valid(&self) -> bool {
         let Mat3 { x_axis: x, y_axis: y, z_axis: z } = self.axes;

@@ -29,9 +29,9 @@ const STEP: f32 = f32::from_bits((127 - 123) << 23);
 pub trait Volume {
     /// Whether `ray` may hit something in the volume from its own beginning up to `t_max`.
     ///
-    /// `false` is a promise: no certified primitive that lies in the volume is hit there, and no other one whose bounds do
-    /// ([`Primitives::is_certified`](crate::Primitives::is_certified)), by what the tests of primitives answer, roundings
-    /// included.
+    /// `false` is a promise: no certified primitive that lies in the volume is hit there, and no other one whose bounds
+    /// do ([`Primitives::is_certified`](crate::Primitives::is_certified)), by what the tests of primitives answer,
+    /// roundings included.
     fn may_meet(&self, ray: &PreparedRay, t_max: f32) -> bool;
 
     /// The cubic measure, rounded.
@@ -68,9 +68,9 @@ impl Volume for Sphere {
     /// With `D` the direction over its largest component and `a` the way from the origin to the centre, the line's
     /// distance is `|a × D| / |D|`. The centre's parameter is `a·D / |D|²`, the sphere's reach in it at most `r / |D|`.
     ///
-    /// *Errors*, in u = 2^-24 of `|a|₁ + r`: 8 in the cross product, 10 from the direction, squares and sums; 187 of those by
-    /// which the sphere is enlarged are left for them. Infinite and NaN sides never reject, so that nothing is rejected
-    /// where distances exceed 2^63, and hardly anything below 2^-60.
+    /// *Errors*, in u = 2^-24 of `|a|₁ + r`: 8 in the cross product, 10 from the direction, squares and sums; 187 of
+    /// those by which the sphere is enlarged are left for them. Infinite and NaN sides never reject, so that nothing is
+    /// rejected where distances exceed 2^63, and hardly anything below 2^-60.
     #[inline]
     fn may_meet(&self, ray: &PreparedRay, t_max: f32) -> bool {
         let inverse = ray.shear.inverse;
@@ -97,10 +97,10 @@ impl Volume for Obb {
     /// The separating axes of a segment and a box, in `f32` and without division: three faces and three cross products.
     /// Gottschalk, Lin and Manocha, *OBBTree: a hierarchical structure for rapid interference detection*, 1996.
     ///
-    /// *Errors* of the cross products, in u = 2^-24 of `|a|₁ + |h|₁`: 36 from the rotated origin and direction, 16 from the
-    /// reach, 128 are allowed, of a valid box. Faces: a point within the interval lies before or behind the face by less than 20 on the line
-    /// as rotated, and so does one of the ends, or is so far off on the other side that its roundings do not matter.
-    /// Infinite and NaN sides never reject.
+    /// *Errors* of the cross products, in u = 2^-24 of `|a|₁ + |h|₁`: 36 from the rotated origin and direction, 16 from
+    /// the reach, 128 are allowed, of a valid box. Faces: a point within the interval lies before or behind the face by
+    /// less than 20 on the line as rotated, and so does one of the ends, or is so far off on the other side that its
+    /// roundings do not matter. Infinite and NaN sides never reject.
     #[inline]
     fn may_meet(&self, ray: &PreparedRay, t_max: f32) -> bool {
         let [.., major] = ray.shear.axes;

@@ -99,8 +99,8 @@ impl Obb {
     /// along the coordinate axes if these have less surface.
     ///
     /// Larsson and Källberg, *Fast computation of tight-fitting oriented bounding boxes*, Game Engine Gems 2, 2011: the
-    /// ditetrahedron algorithm, DiTO-26. All points are contained, as real numbers; `None` of no points, or if a coordinate
-    /// is not finite or exceeds [`MAX_COORDINATE`](crate::geometry::MAX_COORDINATE).
+    /// ditetrahedron algorithm, DiTO-26. All points are contained, as real numbers; `None` of no points, or if a
+    /// coordinate is not finite or exceeds [`MAX_COORDINATE`](crate::geometry::MAX_COORDINATE).
     #[must_use]
     pub fn dito(points: impl Iterator<Item = Vec3> + Clone) -> Option<Self> {
         let upright = fitted(UPRIGHT, points.clone())?;

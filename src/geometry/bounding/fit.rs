@@ -11,8 +11,8 @@ pub(super) type Frame = [Wide; 3];
 /// The directions of the coordinate axes.
 pub(super) const UPRIGHT: Frame = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
-/// The frame of two directions, of which the second is turned until it is at right angles; if they are all but parallel,
-/// that of the first alone.
+/// The frame of two directions, of which the second is turned until it is at right angles; if they are all but
+/// parallel, that of the first alone.
 pub(super) fn frame(first: Wide, second: Wide) -> Frame {
     let turned = unit(first).zip(unit(second)).and_then(|(x, y)| {
         let z = cross(x, y);

@@ -1,8 +1,8 @@
 //! Volumes around points: three spheres and the least one, and boxes along the axes or turned.
 //!
 //! A volume around a whole object lets rays that miss it pass by at the price of one test:
-//! [`Bounded`](crate::accel::Bounded). Each kind has its function ([`Sphere::welzl`], [`Obb::dito`], …); [`Bounding`] names
-//! them all, for tables and for choices at run time.
+//! [`Bounded`](crate::accel::Bounded). Each kind has its function ([`Sphere::welzl`], [`Obb::dito`], …); [`Bounding`]
+//! names them all, for tables and for choices at run time.
 //!
 //! Builders go over the points several times, keep none of them, and take time in proportion to their number, whatever
 //! they are. They calculate in `f64`, which is soft on chips: there, find a volume once and keep it.

@@ -18,8 +18,9 @@ fn extremes(points: impl Iterator<Item = Vec3>) -> Option<[(Vec3, Vec3); 3]> {
 }
 
 impl Sphere {
-    /// The sphere over the widest of three pairs of extreme points, grown by each point that lies outside: three passes.
-    /// On real meshes mostly within a tenth of the least, once in 26 a quarter wider; the centre of the box does as well.
+    /// The sphere over the widest of three pairs of extreme points, grown by each point that lies outside: three
+    /// passes. On real meshes mostly within a tenth of the least, once in 26 a quarter wider; the centre of the box
+    /// does as well.
     ///
     /// Ritter, *An efficient bounding sphere*, Graphics Gems, 1990.
     #[must_use]

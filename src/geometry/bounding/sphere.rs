@@ -8,7 +8,8 @@ use crate::{
     math,
 };
 
-/// The sphere around all of `points` with its centre there, to the nearest `f32`; `None` of none, or if one is not in range.
+/// The sphere around all of `points` with its centre there, to the nearest `f32`; `None` of none, or if one is not in
+/// range.
 ///
 /// *Contains them:* a square of a distance is off by less than `2^-50` of it, its root by less, and the radius is
 /// rounded upward from a product with `1 + 2^-48`.
@@ -27,8 +28,8 @@ pub(super) fn centered(center: Wide, points: impl Iterator<Item = Vec3>) -> Opti
     (!none).then(|| Sphere::new(center, upward(radius)))
 }
 
-/// Spheres around points. All of them contain every point as real numbers; `None` of no points, or if a coordinate is not
-/// finite or exceeds [`MAX_COORDINATE`](crate::geometry::MAX_COORDINATE).
+/// Spheres around points. All of them contain every point as real numbers; `None` of no points, or if a coordinate is
+/// not finite or exceeds [`MAX_COORDINATE`](crate::geometry::MAX_COORDINATE).
 impl Sphere {
     /// The barycentre of the points and the greatest distance from it: two passes.
     ///

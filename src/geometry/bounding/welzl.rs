@@ -9,7 +9,8 @@ use crate::geometry::Sphere;
 /// The most passes over the points; 26 real meshes need three to nine.
 const PASSES: u32 = 64;
 
-/// How far outside, in parts of the squared radius, a point counts as inside: 2^-40, far below the rounding of the centre.
+/// How far outside, in parts of the squared radius, a point counts as inside: 2^-40, far below the rounding of the
+/// centre.
 const TOLERANCE: f64 = 1.0 + 1.0 / 1_099_511_627_776.0;
 
 /// A centre and a squared radius.
@@ -20,8 +21,8 @@ struct Ball {
 }
 
 impl Ball {
-    /// The least ball with `first` and all of `others`, of which there are up to three, on its surface; `None` if there is
-    /// none, because they lie on a line or in a plane.
+    /// The least ball with `first` and all of `others`, of which there are up to three, on its surface; `None` if there
+    /// is none, because they lie on a line or in a plane.
     fn through(first: Wide, others: &[Wide]) -> Option<Self> {
         let way = |p: &Wide| (sub(*p, first), square(sub(*p, first)));
         let offset = match others {
@@ -86,12 +87,12 @@ impl Sphere {
     /// The least sphere, up to the rounding of its centre.
     ///
     /// Welzl, *Smallest enclosing disks (balls and ellipsoids)*, 1991, as Gärtner, *Fast and robust smallest enclosing
-    /// balls*, 1999, moves points to the front: always the one farthest outside. The front is then never longer than the
-    /// at most four points that the ball rests on, so the points need not be moved, or copied, at all, and instead of a
-    /// recursion the fifteen balls through parts of the front are looked at.
+    /// balls*, 1999, moves points to the front: always the one farthest outside. The front is then never longer than
+    /// the at most four points that the ball rests on, so the points need not be moved, or copied, at all, and instead
+    /// of a recursion the fifteen balls through parts of the front are looked at.
     ///
-    /// Each pass makes the ball larger. There are at most 66, and ten at most on 26 real meshes; were they not enough, the
-    /// sphere would be made larger than it need be.
+    /// Each pass makes the ball larger. There are at most 66, and ten at most on 26 real meshes; were they not enough,
+    /// the sphere would be made larger than it need be.
     #[must_use]
     pub fn welzl(points: impl Iterator<Item = Vec3> + Clone) -> Option<Self> {
         // Seen from one of them, so that those far from the origin keep their digits.
