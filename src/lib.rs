@@ -104,7 +104,8 @@ extern crate alloc;
 extern crate std;
 
 pub use accel::{
-    Accelerator, Bvh, DualSplit, Grid, KdTree, List, Octree, Traversal, bvh, dualsplit, grid, kdtree, octree,
+    Accelerator, Bvh, CompactKdTree, DualSplit, Grid, KdTree, List, Octree, Traversal, bvh, dualsplit, grid, kdtree,
+    octree,
 };
 pub use arena::Arena;
 pub use error::Error;

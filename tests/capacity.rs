@@ -145,6 +145,7 @@ fn the_words_asked_for_always_suffice() {
             split: random.pick(&[Split::Midpoint, Split::Median, Split::Sah]),
             leaf_size: random.below(4) as u32,
             intersection_cost: random.pick(&[0.3, 2.0, 1.0e9, f32::INFINITY, f32::NAN, -1.0]),
+            byte_cost: random.pick(&[0.0, 0.2, 1.0e9, f32::INFINITY, f32::NAN, -1.0]),
             empty_bonus: random.pick(&[0.0, 0.2, 1.0, f32::NAN, -9.0]),
             max_depth: random.pick(&[None, Some(0), Some(2), Some(u32::MAX)]),
             bytes_per_primitive: random.below(400) as u32,

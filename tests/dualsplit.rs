@@ -66,7 +66,8 @@ fn paused<P: Primitives>(tree: &DualSplit, primitives: &P, ray: &Ray, share: u32
 #[test]
 fn dual_split_trees_answer_as_the_list() {
     let mut random = Random::new(1);
-    let (mut memory, mut other) = (vec![0; DualSplit::words(100)], vec![0; DualSplit::words(100)]);
+    let (mut memory, mut other) =
+        (vec![0; DualSplit::words(100, &Options::balanced())], vec![0; DualSplit::words(100, &Options::balanced())]);
     let (mut cast, mut hits, mut nodes, mut scenes) = (0, 0, 0, 0);
     while cast < rays() {
         let family = random.below(FAMILIES);
@@ -114,7 +115,7 @@ fn dual_split_trees_answer_as_the_list() {
 #[test]
 fn all_hits_come_in_order() {
     let mut random = Random::new(6);
-    let mut memory = vec![0; DualSplit::words(40)];
+    let mut memory = vec![0; DualSplit::words(40, &Options::balanced())];
     for _ in 0..300 {
         let family = random.below(FAMILIES);
         let (vertices, triangles) = adversarial_mesh(&mut random, family, 40);
@@ -134,7 +135,7 @@ fn every_arena_is_large_enough_or_refused() {
     for count in [0, 1, 2, 3, 17, 40] {
         let boxes: Vec<Aabb> = (0..count).map(|_| boxed(&mut random, 2)).collect();
         let shapes = from_fn(count, |i| boxes[i as usize], |_, _| Some(1.0));
-        let (enough, tenant) = (DualSplit::words(count as usize), 5);
+        let (enough, tenant) = (DualSplit::words(count as usize, &Options::balanced()), 5);
         let mut memory = vec![0; enough + tenant + 3];
         let expected = build(&shapes, &mut vec![0; enough], &Options::fast()).as_words().to_vec();
         for k in 0..enough + 3 {
@@ -162,8 +163,8 @@ fn every_arena_is_large_enough_or_refused() {
             assert_eq!(refused, Err(Full { at_least: most, available: k }));
         }
     }
-    const { assert!(DualSplit::words(1000) < 5000) };
-    assert_eq!(DualSplit::words(usize::MAX), usize::MAX);
+    const { assert!(DualSplit::words(1000, &Options::balanced()) < 5000) };
+    assert_eq!(DualSplit::words(usize::MAX, &Options::balanced()), usize::MAX);
 }
 
 #[test]
@@ -172,11 +173,11 @@ fn primitives_without_valid_bounds_are_named() {
     for bad in bad {
         let good = Aabb::new(Vec3::ZERO, Vec3::ONE);
         let shapes = from_fn(9, |i| if i == 5 || i == 7 { bad } else { good }, |_, _| Some(1.0));
-        let mut memory = vec![7; DualSplit::words(9)];
+        let mut memory = vec![7; DualSplit::words(9, &Options::balanced())];
         let mut arena = Arena::new(&mut memory);
         let refused = DualSplit::build(&shapes, &mut arena, &Options::small()).map(|tree| tree.depth());
         assert_eq!(refused, Err(BuildError::Bounds { primitive: 5 }));
-        assert_eq!(arena.available(), DualSplit::words(9));
+        assert_eq!(arena.available(), DualSplit::words(9, &Options::balanced()));
     }
 }
 
@@ -223,7 +224,7 @@ fn adversaries_stay_bounded() {
         let (vertices, triangles) = separate(vertices);
         let mesh = Mesh::new(&vertices, &triangles[..]).unwrap();
         for options in [Options::small(), Options { leaf_size: 1, carve_threshold: 0.0, ..Options::fast() }] {
-            let mut memory = vec![0; DualSplit::words(triangles.len())];
+            let mut memory = vec![0; DualSplit::words(triangles.len(), &Options::balanced())];
             let tree = build(&mesh, &mut memory, &options);
             assert!(tree.depth() as usize <= MAX_DEPTH);
             assert!(tree.as_words().len() * 4 <= triangles.len() * 17 + 1000);
@@ -235,7 +236,7 @@ fn adversaries_stay_bounded() {
 #[test]
 fn cells_hold_their_primitives() {
     let mut random = Random::new(4);
-    let mut memory = vec![0; DualSplit::words(300)];
+    let mut memory = vec![0; DualSplit::words(300, &Options::balanced())];
     for _ in 0..2000 {
         let family = random.below(FAMILIES);
         let (vertices, triangles) = adversarial_mesh(&mut random, family, 300);
@@ -251,7 +252,7 @@ fn numbers_grow_to_32_bits() {
     for count in [65_535, 65_536, 65_537] {
         let boxes = |i: u32| Aabb::new(Vec3::splat((i / 3) as f32), Vec3::splat((i / 3 + 1) as f32));
         let shapes = from_fn(count, boxes, |i, _| Some(i as f32));
-        let mut memory = vec![0; DualSplit::words(count as usize)];
+        let mut memory = vec![0; DualSplit::words(count as usize, &Options::balanced())];
         let tree = build(&shapes, &mut memory, &Options::small());
         check_cells(&tree, &shapes);
         let scene = Scene::new(DualSplit::open(tree.as_words()).unwrap(), &shapes).unwrap();
@@ -265,7 +266,7 @@ fn numbers_grow_to_32_bits() {
 #[test]
 fn nothing_can_be_built_and_hit() {
     let nothing = Mesh::new(&[], &[[0_u16; 3]; 0]).unwrap();
-    let mut memory = vec![0; DualSplit::words(0)];
+    let mut memory = vec![0; DualSplit::words(0, &Options::balanced())];
     let tree = build(&nothing, &mut memory, &Options::fast());
     assert!(tree.root().is_none() && tree.order().len() == 0);
     let scene = Scene::new(DualSplit::open(tree.as_words()).unwrap(), &nothing).unwrap();
@@ -300,7 +301,7 @@ fn some_words(seed: u64, most: usize, leaf_size: u32) -> Vec<u32> {
     let (vertices, triangles) = adversarial_mesh(&mut Random::new(seed), 2, most);
     let mesh = Mesh::new(&vertices, &triangles[..]).unwrap();
     let options = Options { leaf_size, carve_threshold: 1.0, ..Options::fast() };
-    build(&mesh, &mut vec![0; DualSplit::words(most)], &options).as_words().to_vec()
+    build(&mesh, &mut vec![0; DualSplit::words(most, &Options::balanced())], &options).as_words().to_vec()
 }
 
 #[test]
@@ -392,7 +393,7 @@ fn sheet(side: u32) -> (Vec<Vec3>, Vec<[u32; 3]>) {
 fn measured(side: u32, options: &Options) -> (f32, f32, f32) {
     let (vertices, triangles) = sheet(side);
     let mesh = Mesh::new(&vertices, &triangles[..]).unwrap();
-    let mut memory = vec![0; DualSplit::words(triangles.len())];
+    let mut memory = vec![0; DualSplit::words(triangles.len(), &Options::balanced())];
     let tree = build(&mesh, &mut memory, options);
     let bytes = tree.ordered_words().count() as f32 * 4.0 / triangles.len() as f32;
     let mut random = Random::new(7);
@@ -438,7 +439,7 @@ fn work_grows_with_the_length_and_not_with_the_number() {
 fn building_gives_the_same_words_everywhere() {
     let (vertices, triangles) = sheet(20);
     let mesh = Mesh::new(&vertices, &triangles[..]).unwrap();
-    let mut memory = vec![0; DualSplit::words(triangles.len())];
+    let mut memory = vec![0; DualSplit::words(triangles.len(), &Options::balanced())];
     let words = build(&mesh, &mut memory, &Options::balanced()).as_words();
     let sum = words.iter().fold(0x811c_9dc5, |sum: u32, word| (sum ^ word).wrapping_mul(0x0100_0193).rotate_left(13));
     // Changes when the format or the preset does.

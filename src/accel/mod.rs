@@ -24,7 +24,7 @@ pub use counted::{Counted, CountedTraversal};
 pub use dualsplit::DualSplit;
 pub use grid::Grid;
 pub use hierarchy::{Cell, Hierarchy, Inside, MAX_LEVELS};
-pub use kdtree::KdTree;
+pub use kdtree::{CompactKdTree, KdTree};
 pub use leaf::Leaf;
 pub use list::List;
 pub use mailbox::Mailbox;

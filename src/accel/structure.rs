@@ -1,8 +1,8 @@
 //! All structures as one type, for tools that let people choose.
 
 use super::{
-    Accelerator, Bvh, Cell, DualSplit, Grid, Hierarchy, Inside, KdTree, Leaf, List, Octree, Step, Traversal, bvh,
-    dualsplit, grid, kdtree, octree,
+    Accelerator, Bvh, Cell, CompactKdTree, DualSplit, Grid, Hierarchy, Inside, KdTree, Leaf, List, Octree, Step,
+    Traversal, bvh, dualsplit, grid, kdtree, octree,
 };
 use crate::{
     arena::Arena,
@@ -241,6 +241,8 @@ structures! {
     Octree(octree::Options),
     /// A kD-tree.
     KdTree(kdtree::Options),
+    /// A kD-tree with nodes of 4 bytes.
+    CompactKdTree(kdtree::Options),
     /// A bounding volume hierarchy.
     Bvh(bvh::Options),
     /// A dual-split tree.

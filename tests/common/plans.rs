@@ -3,7 +3,7 @@
 use hitscan::{
     Arena, Primitives,
     accel::{Plan, Structure},
-    bvh,
+    bvh, dualsplit,
     error::BuildError,
     grid, kdtree, octree,
 };
@@ -26,15 +26,21 @@ pub fn presets() -> Vec<(&'static str, Plan)> {
         ("kD-tree fast", Plan::KdTree(kdtree::Options::fast())),
         ("kD-tree midpoint", Plan::KdTree(split(kdtree::Split::Midpoint))),
         ("kD-tree median", Plan::KdTree(split(kdtree::Split::Median))),
+        ("compact kD-tree small", Plan::CompactKdTree(kdtree::Options::small())),
+        ("compact kD-tree balanced", Plan::CompactKdTree(kdtree::Options::balanced())),
+        ("compact kD-tree fast", Plan::CompactKdTree(kdtree::Options::fast())),
         ("BVH small", Plan::Bvh(bvh::Options::small())),
         ("BVH balanced", Plan::Bvh(bvh::Options::balanced())),
         ("BVH fast", Plan::Bvh(bvh::Options::fast())),
         ("BVH ploc", Plan::Bvh(ploc)),
+        ("dual-split small", Plan::DualSplit(dualsplit::Options::small())),
+        ("dual-split balanced", Plan::DualSplit(dualsplit::Options::balanced())),
+        ("dual-split fast", Plan::DualSplit(dualsplit::Options::fast())),
     ]
 }
 
 /// How many kinds of structures [`random`] knows.
-pub const KINDS: usize = 4;
+pub const KINDS: usize = 6;
 
 /// A plan of a kind with options at random.
 pub fn random(random: &mut Random, kind: usize) -> Plan {
@@ -62,9 +68,9 @@ pub fn random(random: &mut Random, kind: usize) -> Plan {
                 ..preset
             })
         }
-        2 => {
+        2 | 3 => {
             let preset = random.pick(&[kdtree::Options::small(), kdtree::Options::fast()]);
-            Plan::KdTree(kdtree::Options {
+            let options = kdtree::Options {
                 split: random.pick(&[kdtree::Split::Midpoint, kdtree::Split::Median, kdtree::Split::Sah]),
                 leaf_size,
                 max_depth: random.pick(&[None, None, Some(3), Some(40)]),
@@ -72,7 +78,12 @@ pub fn random(random: &mut Random, kind: usize) -> Plan {
                 clip,
                 max_bytes,
                 ..preset
-            })
+            };
+            if kind == 2 { Plan::KdTree(options) } else { Plan::CompactKdTree(options) }
+        }
+        4 => {
+            let preset = random.pick(&[dualsplit::Options::small(), dualsplit::Options::fast()]);
+            Plan::DualSplit(dualsplit::Options { leaf_size, ..preset })
         }
         _ => {
             let preset = random.pick(&[bvh::Options::small(), bvh::Options::fast()]);

@@ -57,7 +57,7 @@ const fn number_words(primitives: u32) -> usize {
 /// use hitscan::{Arena, DualSplit, Mesh, Ray, Scene, dualsplit::Options, glam::Vec3};
 /// let vertices = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
 /// let mesh = Mesh::new(&vertices, &[[0_u16, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]])?;
-/// let mut memory = [0; DualSplit::words(4)];
+/// let mut memory = [0; DualSplit::words(4, &Options::balanced())];
 /// let tree = DualSplit::build(&mesh, &mut Arena::new(&mut memory), &Options::fast())?;
 /// let scene = Scene::new(tree, &mesh)?;
 /// let hit = scene.closest_hit(&Ray::new(Vec3::ONE, Vec3::NEG_ONE)).unwrap();
@@ -96,9 +96,10 @@ impl<'a> DualSplit<'a> {
         Ok(Self::view(words).unwrap_or_else(Self::nothing))
     }
 
-    /// Words of arena that suffice to build a tree over `primitives`, scratch included, and without which it does not go.
+    /// Words of arena that suffice to build a tree over `primitives`, scratch included, and without which it does not go,
+    /// whatever the options.
     #[must_use]
-    pub const fn words(primitives: usize) -> usize {
+    pub const fn words(primitives: usize, _options: &Options) -> usize {
         stage::words(primitives)
     }
 
@@ -148,7 +149,7 @@ impl<'a> DualSplit<'a> {
     /// # use hitscan::{Arena, DualSplit, Mesh, Scene, dualsplit::Options, glam::Vec3};
     /// # let vertices = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
     /// # let triangles = [[0_u16, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]];
-    /// # let mut memory = [0; 2 * DualSplit::words(4)];
+    /// # let mut memory = [0; 2 * DualSplit::words(4, &Options::balanced())];
     /// # let mut arena = Arena::new(&mut memory);
     /// let tree = DualSplit::build(&Mesh::new(&vertices, &triangles)?, &mut arena, &Options::small())?;
     /// let sorted: Vec<_> = tree.order().map(|number| triangles[number as usize]).collect();

@@ -5,25 +5,26 @@
 
 use super::{
     HEADER_WORDS,
-    node::{Kind, MAX_LINK, Node, Side},
+    form::{Form, reference_bytes},
+    node::{MAX_LINK, Node, Side},
     open::Header,
     options::{Options, Split},
-    reference_bytes,
-    split::{Item, Place, Plane, SCRATCH_WORDS, choose},
+    pack::pack,
+    split::{Item, Place, Plane, Rules, SCRATCH_WORDS, choose},
     stage::{ITEM_WORDS, NONE, Stage, TASKS_WORDS, Task, swap},
 };
 use crate::{
     arena::Full,
     error::BuildError,
-    geometry::Aabb,
-    math,
+    geometry::{Aabb, Lattice},
+    math::{self, greatest},
     primitives::{Primitives, bounds_of},
 };
 
 /// See [`KdTree::words`](super::KdTree::words).
-pub(super) const fn words(primitives: usize, options: &Options) -> usize {
-    // In the stream a reference takes a word, of which the budget may have counted half.
-    let bytes = options.bytes(primitives);
+pub(super) const fn words(primitives: usize, options: &Options, form: Form) -> usize {
+    // In the stream a reference takes a word and a node two, of which the budget may have counted half.
+    let bytes = options.bytes(primitives, form);
     let (stream, packed) = (bytes / 2, bytes / 4);
     // Beside the stream stand first the items and what is sorted of them, then the references on their way behind the nodes.
     let sorted = primitives.saturating_mul(SCRATCH_WORDS);
@@ -45,18 +46,19 @@ pub(super) fn build<P: Primitives + ?Sized>(
     primitives: &P,
     words: &mut [u32],
     options: &Options,
+    form: Form,
 ) -> Result<usize, BuildError> {
     let count = primitives.len();
     if count > MAX_LINK {
         return Err(BuildError::TooMany { limit: MAX_LINK });
     }
-    let allowed = options.bytes(count as usize);
-    let at_least = super::least_bytes(count as usize);
+    let allowed = options.bytes(count as usize, form);
+    let at_least = form.least_bytes(count as usize);
     if allowed < at_least {
         return Err(BuildError::Budget { at_least, allowed });
     }
     let bounds = bounds_of(primitives).map_err(|primitive| BuildError::Bounds { primitive })?;
-    let mut attempt = |options: &Options| Builder::new(primitives, words, options, bounds)?.run();
+    let mut attempt = |options: &Options| Builder::new(primitives, words, options, bounds, form)?.run();
 
     let built = attempt(options)?;
     if options.max_bytes.is_none() || !built.cut_short {
@@ -65,15 +67,19 @@ pub(super) fn build<P: Primitives + ?Sized>(
     if options.split != Split::Sah {
         return Ok(built.words);
     }
-    // The greatest intersection cost at which no cell had to become a leaf for want of bytes.
-    let (mut fits, mut exceeds) = (options.intersection_cost / 256.0, options.intersection_cost);
-    for _ in 0..7 {
-        let cost = math::sqrt(fits * exceeds);
-        let cut_short = attempt(&Options { intersection_cost: cost, ..*options })?.cut_short;
-        *(if cut_short { &mut exceeds } else { &mut fits }) = cost;
+    // The least cost of a byte at which no cell has to become a leaf for want of bytes.
+    let least = math::greatest(options.byte_cost, 1.0 / 64.0);
+    let (mut exceeds, mut fits) = (least, least * 16_384.0);
+    for _ in 0..9 {
+        let byte_cost = math::sqrt(fits * exceeds);
+        let cut_short = attempt(&Options { byte_cost, ..*options })?.cut_short;
+        *(if cut_short { &mut exceeds } else { &mut fits }) = byte_cost;
     }
-    Ok(attempt(&Options { intersection_cost: fits, ..*options })?.words)
+    Ok(attempt(&Options { byte_cost: fits, ..*options })?.words)
 }
+
+/// The share of rays that choose where to go by the number of primitives instead of the surface of cells.
+const CLOSE_UP: f32 = 0.125;
 
 /// What an attempt came to.
 struct Built {
@@ -85,8 +91,12 @@ struct Built {
 struct Builder<'w, 'p, P: ?Sized> {
     primitives: &'p P,
     options: &'p Options,
+    form: Form,
+    lattice: Option<Lattice>,
     bounds: Aabb,
     max_depth: u32,
+    /// Half-words that the whole may take.
+    most: u32,
     /// Half-words per reference.
     reference_size: u32,
 
@@ -100,14 +110,23 @@ struct Builder<'w, 'p, P: ?Sized> {
 }
 
 impl<'w, 'p, P: Primitives + ?Sized> Builder<'w, 'p, P> {
-    fn new(primitives: &'p P, words: &'w mut [u32], options: &'p Options, bounds: Aabb) -> Result<Self, Full> {
+    fn new(
+        primitives: &'p P,
+        words: &'w mut [u32],
+        options: &'p Options,
+        bounds: Aabb,
+        form: Form,
+    ) -> Result<Self, Full> {
         let max_depth = options.depth(primitives.len());
         let reference_size = reference_bytes(primitives.len() as usize) as u32 / 2;
         Ok(Self {
             primitives,
             options,
+            form,
+            lattice: form.lattice(&bounds),
             bounds,
             max_depth,
+            most: 0,
             reference_size,
             stage: Stage::new(words, primitives.len())?,
             nodes: 0,
@@ -134,7 +153,14 @@ impl<'w, 'p, P: Primitives + ?Sized> Builder<'w, 'p, P> {
                 }
             };
         }
-        let words = self.finish()?;
+        let tree = Header {
+            nodes: self.nodes,
+            references: self.references,
+            primitives: self.primitives.len(),
+            depth: self.depth,
+            bounds: self.bounds,
+        };
+        let words = pack(&mut self.stage, tree, self.lattice.as_ref())?;
         Ok(Built { words, cut_short: self.cut_short })
     }
 
@@ -151,9 +177,10 @@ impl<'w, 'p, P: Primitives + ?Sized> Builder<'w, 'p, P> {
             *item = Item { bounds: primitives.bounds(primitive), primitive };
         }
         let header = HEADER_WORDS * 4;
-        let bytes = self.options.bytes(count as usize).saturating_sub(header);
+        let bytes = self.options.bytes(count as usize, self.form).saturating_sub(header);
         // Whole words only: an odd number of narrow references is padded.
         let budget = u32::try_from(bytes / 4 * 2).unwrap_or(u32::MAX);
+        self.most = budget;
         Ok(Task { cell: self.bounds, top: count, count, depth: 0, budget, parent: NONE })
     }
 
@@ -166,10 +193,23 @@ impl<'w, 'p, P: Primitives + ?Sized> Builder<'w, 'p, P> {
         }
     }
 
+    /// What a half-word costs in a cell, in steps of the rays that come to it.
+    fn price(&self, cell: &Aabb, count: u32) -> f32 {
+        // Sizes relative to the largest, so that nothing overflows; a little, so that nothing is divided by zero.
+        let scale = greatest(self.bounds.size().max_element(), f32::MIN_POSITIVE);
+        let area = |b: &Aabb| {
+            let s = b.size() / scale;
+            s.x * s.y + s.y * s.z + s.z * s.x + 1.0e-12
+        };
+        let primitives = self.primitives.len() as f32;
+        // Rays from within, or of a camera close by, come more often to small cells with many primitives.
+        let chance = greatest(area(cell) / area(&self.bounds), CLOSE_UP * count as f32 / primitives);
+        self.options.byte_cost * 2.0 / (primitives * chance)
+    }
+
     /// Half-words of a leaf of `count` primitives.
     fn leaf_size(&self, count: usize) -> u32 {
-        let references = if count > 1 { (count as u32).saturating_mul(self.reference_size) } else { 0 };
-        references.saturating_add(Node::WORDS as u32 * 2)
+        self.form.leaf_size(count as u32, self.reference_size, self.most)
     }
 
     /// Writes an inner node, distributes the items and leaves a task for the right child if both have items; the task of
@@ -181,8 +221,11 @@ impl<'w, 'p, P: Primitives + ?Sized> Builder<'w, 'p, P> {
         }
         let options = self.options;
         self.stage.reserve(task.count as usize * SCRATCH_WORDS)?;
+        let sizes = [self.form.node_size(), self.reference_size];
+        let price = self.price(&task.cell, task.count);
         let (scratch, items) = self.stage.scratch(task);
-        let Some(plane) = choose(items, &task.cell, options, scratch) else { return Ok(None) };
+        let rules = Rules { options, lattice: self.lattice.as_ref(), price, sizes };
+        let Some(plane) = choose(items, &task.cell, &rules, scratch) else { return Ok(None) };
 
         // Sort: left, both, right.
         let (mut left, mut both_end, mut right) = (0, 0, items.len());
@@ -207,7 +250,8 @@ impl<'w, 'p, P: Primitives + ?Sized> Builder<'w, 'p, P> {
         if both == items.len() && task.count > 1 && options.split != Split::Sah {
             return Ok(None);
         }
-        let least = self.leaf_size(most_left).saturating_add(self.leaf_size(most_right)).saturating_add(4);
+        let node_size = self.form.inner_size(task.budget);
+        let least = self.leaf_size(most_left).saturating_add(self.leaf_size(most_right)).saturating_add(node_size);
         let crowded = task.top as usize + both > most_items(self.primitives.len() as usize);
         let Some(excess) = task.budget.checked_sub(least).filter(|_| !crowded) else {
             self.cut_short = true;
@@ -219,7 +263,7 @@ impl<'w, 'p, P: Primitives + ?Sized> Builder<'w, 'p, P> {
         self.stage.reserve(Node::WORDS)?;
         let (left_count, right_count) = self.distribute(task, &plane, left, both);
 
-        let (left_cell, right_cell) = task.cell.split(plane.axis, plane.position);
+        let (left_cell, right_cell) = plane.parts(&task.cell);
         let depth = task.depth + 1;
         let mut left = Task {
             cell: left_cell,
@@ -227,7 +271,7 @@ impl<'w, 'p, P: Primitives + ?Sized> Builder<'w, 'p, P> {
             top: (task.top as usize - left + left_count) as u32,
             count: left_count as u32,
             depth,
-            budget: task.budget.saturating_sub(Node::WORDS as u32 * 2),
+            budget: task.budget.saturating_sub(node_size),
             parent: NONE,
         };
         let mut right = Task {
@@ -261,7 +305,7 @@ impl<'w, 'p, P: Primitives + ?Sized> Builder<'w, 'p, P> {
     /// Turns the items on both sides, which lie behind the `left` ones, into parts: the left ones on top of all, the right
     /// ones against those of the right. How many there are on each side.
     fn distribute(&mut self, task: &Task, plane: &Plane, left: usize, both: usize) -> (usize, usize) {
-        let (left_cell, right_cell) = task.cell.split(plane.axis, plane.position);
+        let (left_cell, right_cell) = plane.parts(&task.cell);
         let (primitives, clip) = (self.primitives, self.options.clip);
         let part = |item: &Item, cell: &Aabb| {
             let clipped = if clip && primitives.is_certified(item.primitive) {
@@ -327,56 +371,5 @@ impl<'w, 'p, P: Primitives + ?Sized> Builder<'w, 'p, P> {
         }
         self.stage.top = (task.top - count) as usize;
         Ok(())
-    }
-
-    /// Sorts the stream into nodes and references behind the header; the length of all.
-    fn finish(&mut self) -> Result<usize, BuildError> {
-        let narrow = self.reference_size == 1;
-        let packed = if narrow { self.references.div_ceil(2) } else { self.references } as usize;
-        self.stage.top = 0;
-        self.stage.reserve(packed)?;
-        // References to the far end, nodes together: these move forward only.
-        let shelf = self.stage.words.len() - packed;
-        if let Some(shelf) = self.stage.words.get_mut(shelf..) {
-            shelf.fill(0);
-        }
-        let (mut read, mut write, mut reference) = (HEADER_WORDS, HEADER_WORDS, 0);
-        for _ in 0..self.nodes {
-            let node = [self.stage.word(read), self.stage.word(read + 1)];
-            read += Node::WORDS;
-            for word in node {
-                self.stage.set(write, word);
-                write += 1;
-            }
-            if let Kind::Leaf { count, .. } = Node::from_words(node).kind()
-                && count > 1
-            {
-                for _ in 0..count {
-                    let primitive = self.stage.word(read);
-                    read += 1;
-                    if narrow {
-                        let place = shelf + reference / 2;
-                        self.stage.set(place, self.stage.word(place) | primitive << (16 * (reference % 2)));
-                    } else {
-                        self.stage.set(shelf + reference, primitive);
-                    }
-                    reference += 1;
-                }
-            }
-        }
-        for index in 0..packed {
-            self.stage.set(write + index, self.stage.word(shelf + index));
-        }
-        let header = Header {
-            nodes: self.nodes,
-            references: self.references,
-            primitives: self.primitives.len(),
-            depth: self.depth,
-            bounds: self.bounds,
-        };
-        for (index, word) in header.to_words().into_iter().enumerate() {
-            self.stage.set(index, word);
-        }
-        Ok(write + packed)
     }
 }

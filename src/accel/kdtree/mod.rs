@@ -5,17 +5,24 @@
 //! checked by [`KdTree::open`]; after either, no walk can leave its words or fail to end.
 
 mod build;
+mod compact;
+mod form;
 mod node;
 mod open;
 mod options;
+mod pack;
 mod split;
 mod stage;
 mod traverse;
 
+pub use compact::{CompactKdTraversal, CompactKdTree};
 pub use options::{Options, Split};
 pub use traverse::KdTraversal;
 
-use self::node::{Kind, Node, Side};
+use self::{
+    form::Form,
+    node::{Kind, Node, Side},
+};
 use super::{Accelerator, Cell, Hierarchy, Inside, Leaf, leaf::References};
 use crate::{
     arena::Arena,
@@ -57,18 +64,6 @@ pub struct KdTree<'a> {
     bounds: Aabb,
 }
 
-/// The bytes of a tree of one leaf.
-const fn least_bytes(primitives: usize) -> usize {
-    // A single reference stands in the node; an odd number of narrow ones is padded to a word.
-    let references = if primitives > 1 { primitives.saturating_mul(reference_bytes(primitives)) } else { 0 };
-    references.saturating_add((HEADER_WORDS + Node::WORDS) * 4 + 3) / 4 * 4
-}
-
-/// The bytes of a reference: two where they suffice.
-const fn reference_bytes(primitives: usize) -> usize {
-    if primitives <= 1 << 16 { 2 } else { 4 }
-}
-
 impl<'a> KdTree<'a> {
     /// Builds a tree over `primitives` in the free words of `arena`, of which it keeps only the tree.
     ///
@@ -85,7 +80,7 @@ impl<'a> KdTree<'a> {
         arena: &mut Arena<'a>,
         options: &Options,
     ) -> Result<Self, BuildError> {
-        let words = arena.build(|words| build::build(primitives, words, options))?;
+        let words = arena.build(|words| build::build(primitives, words, options, Form::Plain))?;
         // What was just built needs no check of every node.
         Ok(Self::view(words).unwrap_or(Self::NOTHING))
     }
@@ -93,7 +88,7 @@ impl<'a> KdTree<'a> {
     /// Words of arena that always suffice to build a tree over `primitives`, scratch included.
     #[must_use]
     pub const fn words(primitives: usize, options: &Options) -> usize {
-        build::words(primitives, options)
+        build::words(primitives, options, Form::Plain)
     }
 
     /// A tree over no primitives.

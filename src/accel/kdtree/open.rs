@@ -4,8 +4,8 @@ use glam::Vec3;
 
 use super::{
     HEADER_WORDS, KdTree, MAX_DEPTH,
+    form::reference_bytes,
     node::{Kind, Node},
-    reference_bytes,
 };
 use crate::{
     accel::{Malformed, Reason, leaf::References},
@@ -29,7 +29,7 @@ impl Header {
         [self.nodes, self.references, self.primitives, self.depth, x0, y0, z0, x1, y1, z1]
     }
 
-    fn from_words(words: &[u32]) -> Option<Self> {
+    pub(super) fn from_words(words: &[u32]) -> Option<Self> {
         let &[nodes, references, primitives, depth, x0, y0, z0, x1, y1, z1] = words.first_chunk::<HEADER_WORDS>()?;
         let corner = |bits: [u32; 3]| Vec3::from_array(bits.map(f32::from_bits));
         let bounds = Aabb::new(corner([x0, y0, z0]), corner([x1, y1, z1]));

@@ -1,4 +1,4 @@
-use super::MAX_DEPTH;
+use super::{MAX_DEPTH, form::Form};
 use crate::math;
 
 /// How a cell is divided.
@@ -30,10 +30,14 @@ pub struct Options {
     pub leaf_size: u32,
     /// The greatest depth, at most [`MAX_DEPTH`]; `None` for the rule 8 + 1.3 log2 n (Havran and Bittner 2002).
     pub max_depth: Option<u32>,
-    /// What testing a primitive costs, in steps through a node: the lever between bytes and speed.
+    /// What testing a primitive costs, in steps through a node.
     ///
     /// Only the surface area heuristic looks at it: a cell is divided while that is expected to pay.
     pub intersection_cost: f32,
+    /// What a byte per primitive costs, in steps of a ray through the whole: the lever between bytes and speed.
+    ///
+    /// Only the surface area heuristic looks at it: a node must save so much, by the chance that a ray comes to its cell.
+    pub byte_cost: f32,
     /// By how much a split that cuts off empty space counts as cheaper, 0 … 1.
     pub empty_bonus: f32,
     /// Whether certified primitives are referenced by their clipped parts ("perfect splits"): fewer references for a
@@ -41,25 +45,26 @@ pub struct Options {
     pub clip: bool,
     /// The greatest size in bytes per primitive; cells become leaves where it would be exceeded.
     pub bytes_per_primitive: u32,
-    /// The greatest size in bytes: the intersection cost is lowered until the tree fits.
+    /// The greatest size in bytes: the cost of a byte is raised until the tree fits.
     pub max_bytes: Option<usize>,
 }
 
 impl Options {
-    /// The fewest bytes that still make a tree worth its name: 10 to 20 per triangle.
+    /// The fewest bytes that still make a tree worth its name: 8 to 20 per triangle.
     #[must_use]
     pub const fn small() -> Self {
-        Self { intersection_cost: 0.33, bytes_per_primitive: 48, ..Self::balanced() }
+        Self { byte_cost: 1.0, bytes_per_primitive: 48, ..Self::balanced() }
     }
 
-    /// A tenth slower than [`fast`](Self::fast) in half the bytes: 12 to 25 per triangle.
+    /// Nearly as fast as [`fast`](Self::fast) in two thirds of the bytes: 12 to 40 per triangle.
     #[must_use]
     pub const fn balanced() -> Self {
         Self {
             split: Split::Sah,
             leaf_size: 1,
             max_depth: None,
-            intersection_cost: 0.45,
+            intersection_cost: 2.0,
+            byte_cost: 0.2,
             empty_bonus: 0.2,
             clip: true,
             bytes_per_primitive: 96,
@@ -67,10 +72,10 @@ impl Options {
         }
     }
 
-    /// The least time per ray: 20 to 50 bytes per triangle.
+    /// The least time per ray: 20 to 60 bytes per triangle.
     #[must_use]
     pub const fn fast() -> Self {
-        Self { intersection_cost: 1.0, bytes_per_primitive: 200, ..Self::balanced() }
+        Self { byte_cost: 0.08, bytes_per_primitive: 200, ..Self::balanced() }
     }
 
     /// The same, but at most `bytes` in all.
@@ -86,11 +91,11 @@ impl Options {
     }
 
     /// The greatest size in bytes for `primitives`.
-    pub(super) const fn bytes(&self, primitives: usize) -> usize {
+    pub(super) const fn bytes(&self, primitives: usize, form: Form) -> usize {
         // A constant beside the rate, so that a handful of primitives can still be divided.
         let rate = primitives.saturating_mul(self.bytes_per_primitive as usize).saturating_add(256);
         // A single leaf is always allowed.
-        let least = super::least_bytes(primitives);
+        let least = form.least_bytes(primitives);
         let most = if rate > least { rate } else { least };
         match self.max_bytes {
             Some(bytes) if bytes < most => bytes,

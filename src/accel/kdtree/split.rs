@@ -3,7 +3,7 @@
 use super::options::{Options, Split};
 use crate::{
     accel::sort::{coordinate, key, sort},
-    geometry::{Aabb, Axis},
+    geometry::{Aabb, Axis, Lattice},
     math::greatest,
 };
 
@@ -19,7 +19,11 @@ pub(super) struct Item {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Plane {
     pub(super) axis: Axis,
+    /// Where the right part begins.
     pub(super) position: f32,
+    /// Where the left part ends: there, too, or on a lattice one step behind, so that neither a primitive that ends
+    /// within the step nor one that begins there is on both sides.
+    pub(super) end: f32,
     /// On which side primitives in the plane itself go.
     pub(super) flat_left: bool,
 }
@@ -36,37 +40,95 @@ impl Plane {
     #[inline(always)]
     pub(super) fn place(&self, bounds: &Aabb) -> Place {
         let (min, max) = (self.axis.of(bounds.min), self.axis.of(bounds.max));
-        if min == self.position && max == self.position {
-            if self.flat_left { Place::Left } else { Place::Right }
-        } else if max <= self.position {
-            Place::Left
-        } else if min >= self.position {
-            Place::Right
-        } else {
-            Place::Both
+        match (max <= self.end, min >= self.position) {
+            (true, true) if self.flat_left => Place::Left,
+            (true, false) => Place::Left,
+            (_, true) => Place::Right,
+            (false, false) => Place::Both,
         }
     }
+
+    /// The parts of `cell` on either side.
+    pub(super) fn parts(&self, cell: &Aabb) -> (Aabb, Aabb) {
+        (cell.split(self.axis, self.end).0, cell.split(self.axis, self.position).1)
+    }
+}
+
+/// What a builder looks at when it divides a cell.
+pub(super) struct Rules<'o> {
+    pub(super) options: &'o Options,
+    /// The planes there are, if not all.
+    pub(super) lattice: Option<&'o Lattice>,
+    /// What a half-word costs in this cell, in steps through a node.
+    pub(super) price: f32,
+    /// Half-words of a node, and of a reference.
+    pub(super) sizes: [u32; 2],
 }
 
 /// The plane that divides `cell` best, or none if a leaf is expected to be cheaper.
 ///
 /// `scratch` has [`SCRATCH_WORDS`] per item.
-pub(super) fn choose(items: &[Item], cell: &Aabb, options: &Options, scratch: &mut [u32]) -> Option<Plane> {
-    match options.split {
-        Split::Midpoint => midpoint(cell),
-        Split::Median => median(items, cell),
-        Split::Sah => surface_area(items, cell, options, scratch),
+pub(super) fn choose(items: &[Item], cell: &Aabb, rules: &Rules<'_>, scratch: &mut [u32]) -> Option<Plane> {
+    match rules.options.split {
+        Split::Midpoint => midpoint(cell).map(|plane| rules.nearby(plane)),
+        Split::Median => median(items, cell).map(|plane| rules.nearby(plane)),
+        Split::Sah => surface_area(items, cell, rules, scratch),
     }
     // A plane on the border would make a child equal to the cell.
     .filter(|plane| {
         let (min, max) = (plane.axis.of(cell.min), plane.axis.of(cell.max));
-        min < plane.position && plane.position < max
+        min < plane.position && plane.end < max
     })
+}
+
+impl Rules<'_> {
+    /// A plane that there is, in or just before the place of `plane`.
+    fn nearby(&self, plane: Plane) -> Plane {
+        match self.lattice {
+            None => plane,
+            Some(lattice) => {
+                let number = lattice.below(plane.axis, plane.position);
+                let [position, end] = [number, number + 1].map(|number| lattice.position(plane.axis, number));
+                Plane { position, end, ..plane }
+            }
+        }
+    }
+
+    /// Keys of the last plane that an item from `min` to `max` lies behind, and of the first that it lies before.
+    #[inline(always)]
+    fn keys(&self, axis: Axis, min: f32, max: f32) -> (u32, u32) {
+        match self.lattice {
+            None => (key(min), key(max)),
+            // The left part ends a step behind.
+            Some(lattice) => (lattice.below(axis, min), lattice.above(axis, max).saturating_sub(1)),
+        }
+    }
+
+    /// Half-words of a leaf with so many items: an empty one takes nothing, a single one stands in the node.
+    #[inline(always)]
+    fn leaf_size(&self, items: usize) -> f32 {
+        let [node, reference] = self.sizes;
+        match items {
+            0 => 0.0,
+            1 => node as f32,
+            _ => node as f32 + reference as f32 * items as f32,
+        }
+    }
+
+    /// Where behind the plane of a key the right part begins and where the left one ends.
+    #[inline(always)]
+    fn positions(&self, axis: Axis, key: u32) -> (f32, f32) {
+        match self.lattice {
+            None => (coordinate(key), coordinate(key)),
+            Some(lattice) => (lattice.position(axis, key), lattice.position(axis, key + 1)),
+        }
+    }
 }
 
 fn midpoint(cell: &Aabb) -> Option<Plane> {
     let axis = Axis::of_largest(cell.size());
-    Some(Plane { axis, position: axis.of(cell.center()), flat_left: true })
+    let position = axis.of(cell.center());
+    Some(Plane { axis, position, end: position, flat_left: true })
 }
 
 /// Bins whose counts are narrowed down to the median.
@@ -103,7 +165,7 @@ fn median(items: &[Item], cell: &Aabb) -> Option<Plane> {
         }
         (low, high) = (low + width * bin as f32, low + width * (bin + 1) as f32);
     }
-    Some(Plane { axis, position: high, flat_left: true })
+    Some(Plane { axis, position: high, end: high, flat_left: true })
 }
 
 /// Words per item to sort in: where it begins, where it ends, and room to sort either.
@@ -111,7 +173,7 @@ pub(super) const SCRATCH_WORDS: usize = 3;
 
 /// A way to divide that costs less than all before it.
 struct Best<'o> {
-    options: &'o Options,
+    rules: &'o Rules<'o>,
     cost: f32,
     plane: Option<Plane>,
 }
@@ -153,14 +215,15 @@ impl Chances {
 
 impl Best<'_> {
     #[inline]
-    fn offer(&mut self, chances: &Chances, axis: Axis, position: f32, left: usize, right: usize, flat_left: bool) {
+    fn offer(&mut self, chances: &Chances, plane: Plane, left: usize, right: usize) {
+        let Plane { position, end, .. } = plane;
         // On the border it would not divide.
-        if !(position > chances.min && position < chances.max) {
+        if !(position > chances.min && end < chances.max) {
             return;
         }
         let (before, behind) = chances.of(position);
         let mut work = before * left as f32 + behind * right as f32;
-        // Cutting off a sliver of empty space does not pay for the node.
+        // To cut off a little empty space does not help the rays that begin within the rest.
         let empty = if left == 0 {
             1.0 - behind
         } else if right == 0 {
@@ -168,21 +231,22 @@ impl Best<'_> {
         } else {
             0.0
         };
-        if empty > 0.1 {
-            work *= 1.0 - self.options.empty_bonus;
+        if empty > 0.3 {
+            work *= 1.0 - self.rules.options.empty_bonus;
         }
-        let cost = 1.0 + self.options.intersection_cost * work;
+        let half_words = self.rules.leaf_size(left) + self.rules.leaf_size(right) + self.rules.sizes[0] as f32;
+        let cost = 1.0 + self.rules.options.intersection_cost * work + self.rules.price * half_words;
         if cost < self.cost {
             self.cost = cost;
-            self.plane = Some(Plane { axis, position, flat_left });
+            self.plane = Some(plane);
         }
     }
 }
 
 /// All planes through the items' bounds are tried: the cost is linear between them.
-fn surface_area(items: &[Item], cell: &Aabb, options: &Options, scratch: &mut [u32]) -> Option<Plane> {
-    let cost = options.intersection_cost * items.len() as f32;
-    let mut best = Best { options, cost, plane: None };
+fn surface_area(items: &[Item], cell: &Aabb, rules: &Rules<'_>, scratch: &mut [u32]) -> Option<Plane> {
+    let cost = rules.options.intersection_cost * items.len() as f32 + rules.price * rules.leaf_size(items.len());
+    let mut best = Best { rules, cost, plane: None };
     for axis in Axis::ALL {
         let chances = Chances::new(cell, axis);
         // A flat cell has no chances to compare.
@@ -201,8 +265,9 @@ fn sweep(items: &[Item], axis: Axis, chances: &Chances, best: &mut Best<'_>, scr
     // Begins from the front, flat items from the back.
     let (mut thick, mut flat) = (0, items.len());
     for item in items {
-        let (min, max) = (key(axis.of(item.bounds.min)), key(axis.of(item.bounds.max)));
-        if min == max {
+        let (min, max) = best.rules.keys(axis, axis.of(item.bounds.min), axis.of(item.bounds.max));
+        // Of planes that coincide, the last may be behind the first.
+        if min >= max {
             flat -= 1;
             *begins.get_mut(flat)? = min;
         } else {
@@ -229,10 +294,11 @@ fn sweep(items: &[Item], axis: Axis, chances: &Chances, best: &mut Best<'_>, scr
         ended += equal(ends, ended);
         let inside = equal(flats, passed);
         let (left, right) = (begun + passed, (thick - ended) + (flats.len() - passed - inside));
-        let position = coordinate(plane);
-        best.offer(chances, axis, position, left + inside, right, true);
+        let (position, end) = best.rules.positions(axis, plane);
+        let plane = Plane { axis, position, end, flat_left: true };
+        best.offer(chances, plane, left + inside, right);
         if inside > 0 {
-            best.offer(chances, axis, position, left, right + inside, false);
+            best.offer(chances, Plane { flat_left: false, ..plane }, left, right + inside);
         }
         begun += equal(begins, begun);
         passed += inside;

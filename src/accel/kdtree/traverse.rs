@@ -21,10 +21,10 @@ pub struct KdTraversal<'a> {
 ///
 /// (The entry cannot be had from the exit of the cell just left: a ray in a plane is in both cells all the time.)
 #[derive(Clone, Copy, Debug)]
-struct Cell {
-    node: u32,
-    enter: f32,
-    exit: f32,
+pub(super) struct Cell {
+    pub(super) node: u32,
+    pub(super) enter: f32,
+    pub(super) exit: f32,
 }
 
 impl<'a> KdTraversal<'a> {

@@ -1,0 +1,159 @@
+//! The small form of the kD-tree: nodes of 4 bytes.
+//!
+//! Planes are numbers on a lattice over the bounds, children are found by distance. Built by the steps of
+//! [`KdTree`](super::KdTree), which look at planes of the lattice only and so count what those really divide.
+
+mod node;
+mod open;
+mod traverse;
+
+pub(super) use node::Node;
+pub use traverse::CompactKdTraversal;
+
+use self::node::{Kind, kind};
+use super::{Options, Side, build, form::Form};
+use crate::{
+    accel::{Accelerator, Cell, Hierarchy, Inside, Leaf, leaf::References},
+    arena::Arena,
+    asset::{Asset, Stored},
+    error::{BuildError, Error},
+    geometry::{Aabb, Lattice, PreparedRay},
+    primitives::Primitives,
+};
+
+/// A kD-tree in nodes of 4 bytes: half the size of a [`KdTree`](super::KdTree), a little slower.
+///
+/// ```
+/// use hitscan::{Arena, CompactKdTree, Mesh, Ray, Scene, glam::Vec3, kdtree::Options};
+/// let vertices = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
+/// let mesh = Mesh::new(&vertices, &[[0_u16, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]])?;
+/// let mut memory = vec![0; CompactKdTree::words(4, &Options::small())];
+/// let tree = CompactKdTree::build(&mesh, &mut Arena::new(&mut memory), &Options::small())?;
+/// let scene = Scene::new(tree, &mesh)?;
+/// let hit = scene.closest_hit(&Ray::new(Vec3::ONE, Vec3::NEG_ONE)).unwrap();
+/// assert_eq!(hit.primitive, 3);
+/// # Ok::<(), hitscan::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct CompactKdTree<'a> {
+    words: &'a [u32],
+    /// Nodes, and the words that some need behind them.
+    nodes: &'a [u32],
+    references: References<'a>,
+    reference_count: u32,
+    primitives: u32,
+    depth: u32,
+    bounds: Aabb,
+    lattice: Lattice,
+}
+
+impl<'a> CompactKdTree<'a> {
+    /// Builds a tree over `primitives` in the free words of `arena`, of which it keeps only the tree.
+    ///
+    /// As [`KdTree::build`](super::KdTree::build).
+    ///
+    /// # Errors
+    ///
+    /// Those of [`KdTree::build`](super::KdTree::build).
+    pub fn build<P: Primitives + ?Sized>(
+        primitives: &P,
+        arena: &mut Arena<'a>,
+        options: &Options,
+    ) -> Result<Self, BuildError> {
+        let words = arena.build(|words| build::build(primitives, words, options, Form::Compact))?;
+        // What was just built needs no check of every node.
+        Ok(Self::view(words).unwrap_or(Self::nothing()))
+    }
+
+    /// Words of arena that always suffice to build a tree over `primitives`, scratch included.
+    #[must_use]
+    pub const fn words(primitives: usize, options: &Options) -> usize {
+        build::words(primitives, options, Form::Compact)
+    }
+
+    /// A tree over no primitives.
+    fn nothing() -> Self {
+        Self {
+            words: &[],
+            nodes: &[],
+            references: References::IDENTITY,
+            reference_count: 0,
+            primitives: 0,
+            depth: 0,
+            bounds: Aabb::EMPTY,
+            lattice: Lattice::over(&Aabb::EMPTY, [1; 3]),
+        }
+    }
+
+    /// The tree as words: what a file, flash, a GPU or a message holds.
+    #[must_use]
+    pub const fn as_words(&self) -> &'a [u32] {
+        self.words
+    }
+
+    /// How many words its nodes take: no fewer than there are nodes.
+    #[must_use]
+    pub const fn node_words(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// How many references its leaves hold, those of one primitive left out: they stand in the node.
+    #[must_use]
+    pub const fn reference_count(&self) -> usize {
+        self.reference_count as usize
+    }
+
+    /// The number of planes above its deepest leaf.
+    #[must_use]
+    pub const fn depth(&self) -> u32 {
+        self.depth
+    }
+}
+
+impl<'a> Accelerator for CompactKdTree<'a> {
+    type Traversal = CompactKdTraversal<'a>;
+
+    fn primitives(&self) -> u32 {
+        self.primitives
+    }
+
+    fn bounds(&self) -> Aabb {
+        self.bounds
+    }
+
+    #[inline]
+    fn traverse(&self, ray: &PreparedRay) -> CompactKdTraversal<'a> {
+        CompactKdTraversal::new(self, ray)
+    }
+}
+
+impl<'a> Hierarchy for CompactKdTree<'a> {
+    type Node = u32;
+    type Leaf = Leaf<'a>;
+
+    fn root(&self) -> Option<Cell<u32>> {
+        (self.primitives > 0).then_some(Cell { bounds: self.bounds, node: 0 })
+    }
+
+    fn open(&self, cell: &Cell<u32>) -> Inside<u32, Leaf<'a>> {
+        match kind(self.nodes, cell.node) {
+            Some(Kind::Inner { axis, plane, left, right, empty }) => {
+                let [begin, end] = [plane, plane + 1].map(|number| self.lattice.position(axis, number));
+                let (below, above) = (cell.bounds.split(axis, end).0, cell.bounds.split(axis, begin).1);
+                let below = (empty != Some(Side::Left)).then_some(Cell { bounds: below, node: left });
+                let above = (empty != Some(Side::Right)).then_some(Cell { bounds: above, node: right });
+                Inside::Cells([below, above])
+            }
+            Some(Kind::Leaf { first, count: 1, .. }) => Inside::Leaf(Leaf::of(References::IDENTITY, first, 1)),
+            Some(Kind::Leaf { first, count, .. }) => Inside::Leaf(Leaf::of(self.references, first, count)),
+            None => Inside::Cells([None; 2]),
+        }
+    }
+}
+
+/// The section of a compact kD-tree.
+impl<'a> Stored<'a> for CompactKdTree<'a> {
+    fn read(asset: &Asset<'a>) -> Result<Self, Error> {
+        Ok(Self::open(asset.section(crate::asset::Kind::CompactKdTree)?)?)
+    }
+}

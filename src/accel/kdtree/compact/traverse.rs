@@ -1,0 +1,160 @@
+use super::{CompactKdTree, node::Node};
+use crate::{
+    accel::{
+        Leaf, Step, Traversal,
+        kdtree::{MAX_DEPTH, traverse::Cell},
+        leaf::References,
+    },
+    geometry::{Lattice, PreparedRay, beyond, slack},
+    math::{greatest, least},
+};
+
+/// The walk through a [`CompactKdTree`]: that through a [`KdTree`](crate::KdTree), step by step, but its planes are
+/// numbers and its children some words ahead.
+#[derive(Clone, Debug)]
+pub struct CompactKdTraversal<'a> {
+    nodes: &'a [u32],
+    references: References<'a>,
+    lattice: Lattice,
+    slack: f32,
+    /// The cell to go on with: the whole at first, after a pause the one before which it was; none behind a leaf.
+    next: Option<Cell>,
+    /// Far children, the nearest on top.
+    stack: heapless::Vec<Cell, MAX_DEPTH>,
+}
+
+impl<'a> CompactKdTraversal<'a> {
+    #[inline]
+    pub(super) fn new(tree: &CompactKdTree<'a>, ray: &PreparedRay) -> Self {
+        // Not filled here, so that it is made where it stays.
+        let mut traversal = Self {
+            nodes: tree.nodes,
+            references: tree.references,
+            lattice: tree.lattice,
+            slack: 0.0,
+            next: None,
+            stack: heapless::Vec::new(),
+        };
+        if let Some((enter, exit)) = tree.bounds.interval(ray) {
+            let enter = greatest(enter, ray.ray().t_min);
+            let exit = least(exit, beyond(ray.ray().t_max));
+            traversal.slack = slack(enter);
+            traversal.next = if enter > exit { None } else { Some(Cell { node: 0, enter, exit }) };
+        }
+        traversal
+    }
+
+    /// The nearest cell that begins before `end`.
+    #[inline(always)]
+    fn pop(&mut self, end: f32) -> Option<Cell> {
+        loop {
+            let cell = self.stack.pop()?;
+            if !(cell.enter > end) {
+                return Some(cell);
+            }
+        }
+    }
+
+    /// The primitives of the leaf at `index`.
+    #[inline(always)]
+    fn leaf(&self, node: Node, index: u32) -> Leaf<'a> {
+        let (mut first, mut count) = (node.first(), node.count());
+        if node.is_far() | node.is_large() {
+            let behind = |by: u32| self.nodes.get((index + by) as usize).copied().unwrap_or(0);
+            if node.is_far() {
+                first = behind(1);
+            }
+            if node.is_large() {
+                count = behind(1 + u32::from(node.is_far()));
+            }
+        }
+        let references = if count == 1 { References::IDENTITY } else { self.references };
+        Leaf::of(references, first, count)
+    }
+
+    #[inline(always)]
+    fn advance<const BOUNDED: bool>(&mut self, ray: &PreparedRay, t_max: f32, budget: &mut u32) -> Step<Leaf<'a>> {
+        let (nodes, slack, end) = (self.nodes, self.slack, beyond(t_max));
+        let lattice = self.lattice;
+        let Some(mut cell) = self.next.take().or_else(|| self.pop(end)) else { return Step::Done };
+        loop {
+            if BOUNDED {
+                if *budget == 0 {
+                    self.next = Some(cell);
+                    return Step::Paused;
+                }
+                *budget -= 1;
+            }
+            let Some(&word) = nodes.get(cell.node as usize) else { return Step::Done };
+            let node = Node::from_word(word);
+            let axis = node.axis_or_leaf();
+            if axis == Node::LEAF {
+                if node.count() != 0 {
+                    return Step::Leaf(self.leaf(node, cell.node));
+                }
+                match self.pop(end) {
+                    Some(next) => cell = next,
+                    None => return Step::Done,
+                }
+                continue;
+            }
+            // The child on the ray's side first.
+            let view = &ray.views[axis as usize];
+            let descended = node.is_descended(ray.descending);
+            // The far child begins at one plane of a step, the near one ends at the other.
+            let (begin, end_of) = (node.plane() + u32::from(descended), node.plane() + u32::from(!descended));
+            let entry = (lattice.plane(axis, begin) - view.origin) * view.entry;
+            let exit = (lattice.plane(axis, end_of) - view.origin) * view.exit + slack;
+            // Written so that NaN, the ray in the plane, visits both.
+            if node.is_cut() {
+                // One child: the cell shrinks to it, or the ray passes it by.
+                let passed = if node.is_empty_on_the_right() != descended {
+                    cell.exit = least(exit, cell.exit);
+                    exit < cell.enter
+                } else {
+                    cell.enter = greatest(entry, cell.enter);
+                    entry > cell.exit
+                };
+                cell.node += 1;
+                if passed {
+                    match self.pop(end) {
+                        Some(next) => cell = next,
+                        None => return Step::Done,
+                    }
+                }
+                continue;
+            }
+            let (mut left, mut right) = (cell.node + 1, cell.node + node.link());
+            if node.is_long() {
+                right = cell.node.wrapping_add(nodes.get(left as usize).copied().unwrap_or(0));
+                left += 1;
+            }
+            let (near, far) = if descended { (right, left) } else { (left, right) };
+            if entry > cell.exit {
+                cell.node = near;
+            } else if exit < cell.enter {
+                cell.node = far;
+            } else {
+                // Cannot fail: the tree is no deeper than the stack.
+                let enter = greatest(entry, cell.enter);
+                let _ = self.stack.push(Cell { node: far, enter, exit: cell.exit });
+                cell = Cell { node: near, enter: cell.enter, exit: least(exit, cell.exit) };
+            }
+        }
+    }
+}
+
+impl<'a> Traversal for CompactKdTraversal<'a> {
+    type Leaf = Leaf<'a>;
+
+    fn next_leaf(&mut self, ray: &PreparedRay, t_max: f32) -> Option<Leaf<'a>> {
+        match self.advance::<false>(ray, t_max, &mut 0) {
+            Step::Leaf(leaf) => Some(leaf),
+            Step::Paused | Step::Done => None,
+        }
+    }
+
+    fn step(&mut self, ray: &PreparedRay, t_max: f32, budget: &mut u32) -> Step<Leaf<'a>> {
+        self.advance::<true>(ray, t_max, budget)
+    }
+}
