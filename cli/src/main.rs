@@ -1,4 +1,4 @@
-//! `hitscan` on the command line: renders, bakes, inspects meshes and casts rays at them.
+//! `hitscan` on the command line: renders, bakes, inspects meshes, casts rays at them and compares structures over them.
 //!
 //! Every failure is one line on standard error, `hitscan: WHAT: HOW TO MEND IT`, and exit code 2. Outputs appear whole or
 //! not at all.

@@ -19,7 +19,10 @@ use crate::{
 
 /// Compare all structures over the same triangles
 ///
-/// Prints, for each structure, the time to build it, its bytes, the nodes visited and triangles tested per bounce ray, million rays per second on one thread, and the speed-up over the list, which tests every triangle. All answers are compared bit for bit; exit code 1 if any differ. The last line recommends a structure by counts and bytes, not by the clock: the one that `--structure auto` takes.
+/// Prints, for each structure, the time to build it, its bytes, the nodes visited and triangles tested per bounce ray,
+/// million rays per second on one thread, and the speed-up over the list, which tests every triangle. All answers are
+/// compared bit for bit; exit code 1 if any differ. The last line recommends a structure by counts and bytes, not by the
+/// clock: the one that `--structure auto` takes.
 ///
 /// The structures take turns, and medians are shown. Slow ones, such as the list, answer only some of the rays.
 #[derive(Debug, clap::Args)]

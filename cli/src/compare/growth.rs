@@ -43,5 +43,6 @@ fn render(reports: &[Report], what: &str, value: impl Fn(&Outcome) -> f64, cell:
 pub fn describe(reports: &[Report]) -> String {
     let per_ray = render(reports, "ns per bounce ray", |outcome| 1.0e3 / outcome.speeds[1], figure);
     let build = render(reports, "time to build", |outcome| outcome.build, seconds);
-    format!("{per_ray}\n{build}")
+    let verdict = reports.last().map_or(Vec::new(), Report::verdict).join("\n");
+    format!("{per_ray}\n{build}{verdict}\n")
 }

@@ -103,7 +103,7 @@ impl Report {
     }
 
     /// What is recommended, by counts and bytes, and what `auto` takes if that is another one.
-    fn verdict(&self) -> Vec<String> {
+    pub fn verdict(&self) -> Vec<String> {
         let rule = by_number(self.triangles);
         let counted = self.counted();
         let line =

@@ -44,11 +44,11 @@ impl Named {
         Self {
             name: "kdtree-midpoint",
             plan: |preset| kd(preset, Split::Midpoint),
-            node_cost: 0.5,
+            node_cost: 0.65,
             is_candidate: false,
         },
-        Self { name: "kdtree-median", plan: |preset| kd(preset, Split::Median), node_cost: 0.5, is_candidate: false },
-        Self { name: "kdtree", plan: |preset| kd(preset, Split::Sah), node_cost: 0.5, is_candidate: true },
+        Self { name: "kdtree-median", plan: |preset| kd(preset, Split::Median), node_cost: 0.65, is_candidate: false },
+        Self { name: "kdtree", plan: |preset| kd(preset, Split::Sah), node_cost: 0.65, is_candidate: true },
     ];
 
     /// What `auto` takes where trials would last too long.

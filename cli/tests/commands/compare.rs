@@ -80,6 +80,7 @@ fn growth_is_shown() {
         let line = text.lines().find(|line| line.starts_with(title)).unwrap();
         assert!(line.contains("1,000") && line.contains("4,000") && line.ends_with("growth"), "{line}");
     }
+    assert!(text.contains("\nrecommended, and what --structure auto takes: "), "{text}");
     let svg = String::from_utf8(folder.read("growth.svg")).unwrap();
     assert!(["O(n)", "O(log n)", "O(n log n)"].into_iter().all(|guide| svg.contains(guide)));
     assert!(String::from_utf8(folder.read("growth.csv")).unwrap().contains("\n\"terrain of 4,000\",4000,"));
