@@ -47,6 +47,38 @@ pub fn build<P: Primitives + ?Sized>(primitives: &P, plan: &Plan) -> Result<Vec<
     }
 }
 
+/// A structure over primitives that stand in the order of its leaves, and that order: the old numbers by place.
+///
+/// Hierarchies whose leaves are ranges need no list of numbers then; `None` of other structures. The mesh is put into
+/// order by [`reorder`], and [`Baker::numbers`] stores the order for who wants the old numbers.
+///
+/// ```
+/// use hitscan::{Mesh, Primitives, Scene, accel::{Plan, Structure}, bake, bvh, glam::Vec3};
+/// let vertices = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
+/// let mesh = Mesh::new(&vertices, &[[0_u16, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]])?;
+/// let plan = Plan::Bvh(bvh::Options::small());
+/// let words = bake::build(&mesh, &plan)?;
+///
+/// let (words, order) = bake::ordered(&Structure::open(plan.kind().unwrap(), &words)?).unwrap();
+/// let corners = bake::reorder(&mesh, &order);
+/// let scene = Scene::new(Structure::open(plan.kind().unwrap(), &words)?, Mesh::new(&vertices, &corners[..])?)?;
+/// # Ok::<(), hitscan::Error>(())
+/// ```
+#[must_use]
+pub fn ordered(structure: &Structure<'_>) -> Option<(Vec<u32>, Vec<u32>)> {
+    match structure {
+        Structure::Bvh(bvh) => Some((bvh.ordered().as_words().to_vec(), bvh.order().collect())),
+        Structure::DualSplit(tree) => Some((tree.ordered_words().collect(), tree.order().collect())),
+        _ => None,
+    }
+}
+
+/// The corners of a mesh's triangles in another order, which names the triangles that exist.
+#[must_use]
+pub fn reorder(mesh: &Mesh<'_>, order: &[u32]) -> Vec<[u32; 3]> {
+    order.iter().filter_map(|&triangle| mesh.indices().get(triangle)).collect()
+}
+
 /// Puts sections together into an asset: the same bytes on every host. See [`Asset`](crate::asset::Asset).
 #[derive(Clone, Debug, Default)]
 pub struct Baker {
