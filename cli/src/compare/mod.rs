@@ -1,5 +1,6 @@
 //! `hitscan compare`: all structures side by side, on the same meshes and rays.
 
+mod around;
 mod clock;
 mod contest;
 mod growth;

@@ -1,5 +1,6 @@
-use hitscan::{Mesh, render::Caster};
+use hitscan::{Mesh, geometry::Bounding, render::Caster};
 
+use super::around::{Behind, Ordered, Remembering};
 use crate::{
     failure::Failure,
     scene::{Built, Named, Preset, unwrapped},
@@ -42,7 +43,19 @@ impl Made for Built {
 
 impl Row {
     /// What is put around structures: the name of the row, that of the structure, and how.
-    const AROUND: &[(&str, &str, Make)] = &[];
+    const AROUND: &[(&str, &str, Make)] = &[
+        ("list behind a sphere", "list", |mesh, named, preset| {
+            Behind::make(Bounding::WelzlSphere, mesh, named, preset)
+        }),
+        ("list behind an AABB", "list", |mesh, named, preset| Behind::make(Bounding::Aabb, mesh, named, preset)),
+        ("list behind an OBB", "list", |mesh, named, preset| Behind::make(Bounding::DitoObb, mesh, named, preset)),
+        ("grid, mailbox", "grid", Remembering::make),
+        ("octree, mailbox", "octree", Remembering::make),
+        ("kdtree, mailbox", "kdtree", Remembering::make),
+        ("bvh in order", "bvh", Ordered::make),
+        ("bvh-ploc in order", "bvh-ploc", Ordered::make),
+        ("dual-split in order", "dual-split", Ordered::make),
+    ];
 
     /// All rows: each structure, and behind it what is put around it.
     pub fn all() -> Vec<Self> {

@@ -9,7 +9,12 @@ macro_rules! unwrapped {
     ($structure:expr, $name:ident => $body:expr) => {
         match $structure {
             hitscan::accel::Structure::List($name) => $body,
+            hitscan::accel::Structure::Grid($name) => $body,
+            hitscan::accel::Structure::Octree($name) => $body,
             hitscan::accel::Structure::KdTree($name) => $body,
+            hitscan::accel::Structure::CompactKdTree($name) => $body,
+            hitscan::accel::Structure::Bvh($name) => $body,
+            hitscan::accel::Structure::DualSplit($name) => $body,
             $name => $body,
         }
     };
@@ -78,6 +83,14 @@ impl Built {
     /// The same, with the reason why it was chosen.
     pub fn because(self, why: String) -> Self {
         Self { why: Some(why), ..self }
+    }
+
+    /// The same over `primitives` in the order of its leaves, and that order; as it is, if its leaves need a list.
+    pub fn ordered<P: Primitives>(self, primitives: &P) -> Result<(Self, Vec<u32>), Failure> {
+        Ok(match bake::ordered(&self.structure(primitives)?) {
+            Some((words, order)) => (Self { words, ..self }, order),
+            None => (self, (0..primitives.len()).collect()),
+        })
     }
 
     /// How long it took to get it.

@@ -2,7 +2,10 @@ use std::str::FromStr;
 
 use hitscan::accel::{
     Plan,
+    bvh::{self, Method},
+    dualsplit, grid,
     kdtree::{self, Split},
+    octree,
 };
 
 use super::Preset;
@@ -37,19 +40,30 @@ fn kd(preset: Preset, split: Split) -> Plan {
     Plan::KdTree(kdtree::Options { split, ..tuned!(preset, kdtree::Options) })
 }
 
+/// A hierarchy that is built in this way.
+fn bvh(preset: Preset, method: Method) -> Plan {
+    Plan::Bvh(bvh::Options { method, ..tuned!(preset, bvh::Options) })
+}
+
 impl Named {
     /// All of them, the list first: answers and speeds are compared with its own.
     pub const ALL: &[Self] = &[
-        Self { name: "list", plan: |_| Plan::List, node_cost: 0.0, is_candidate: false },
-        Self {
-            name: "kdtree-midpoint",
-            plan: |preset| kd(preset, Split::Midpoint),
-            node_cost: 0.65,
-            is_candidate: false,
-        },
-        Self { name: "kdtree-median", plan: |preset| kd(preset, Split::Median), node_cost: 0.65, is_candidate: false },
-        Self { name: "kdtree", plan: |preset| kd(preset, Split::Sah), node_cost: 0.65, is_candidate: true },
+        Self { is_candidate: false, ..Self::new("list", 0.0, |_| Plan::List) },
+        Self::new("grid", 0.5, |preset| Plan::Grid(tuned!(preset, grid::Options))),
+        Self::new("octree", 1.5, |preset| Plan::Octree(tuned!(preset, octree::Options))),
+        Self { is_candidate: false, ..Self::new("kdtree-midpoint", 0.5, |preset| kd(preset, Split::Midpoint)) },
+        Self { is_candidate: false, ..Self::new("kdtree-median", 0.5, |preset| kd(preset, Split::Median)) },
+        Self::new("kdtree", 0.5, |preset| kd(preset, Split::Sah)),
+        Self::new("kdtree-compact", 0.6, |preset| Plan::CompactKdTree(tuned!(preset, kdtree::Options))),
+        Self::new("bvh", 1.0, |preset| bvh(preset, Method::Sah)),
+        Self { is_candidate: false, ..Self::new("bvh-ploc", 1.0, |preset| bvh(preset, Method::Ploc)) },
+        Self::new("dual-split", 0.7, |preset| Plan::DualSplit(tuned!(preset, dualsplit::Options))),
     ];
+
+    /// One that `auto` may choose.
+    const fn new(name: &'static str, node_cost: f64, plan: fn(Preset) -> Plan) -> Self {
+        Self { name, plan, node_cost, is_candidate: true }
+    }
 
     /// What `auto` takes where trials would last too long.
     const ASSUMED: &str = "kdtree";
@@ -75,7 +89,11 @@ impl Named {
     /// How it is built for a preset, within so many bytes if it can be made to fit.
     pub fn plan(&self, preset: Preset, most: Option<usize>) -> Plan {
         match ((self.plan)(preset), most) {
+            (Plan::Grid(options), Some(bytes)) => Plan::Grid(options.fit(bytes)),
+            (Plan::Octree(options), Some(bytes)) => Plan::Octree(options.fit(bytes)),
             (Plan::KdTree(options), Some(bytes)) => Plan::KdTree(options.fit(bytes)),
+            (Plan::CompactKdTree(options), Some(bytes)) => Plan::CompactKdTree(options.fit(bytes)),
+            (Plan::Bvh(options), Some(bytes)) => Plan::Bvh(options.fit(bytes)),
             (plan, _) => plan,
         }
     }
