@@ -30,50 +30,53 @@ fn color(place: usize) -> RGBAColor {
     COLORS[place % COLORS.len()].mix(if place < COLORS.len() { 1.0 } else { 0.45 })
 }
 
-/// A named line or dot.
+/// A named line.
 struct Series {
     name: String,
     points: Vec<(f64, f64)>,
 }
 
-/// Draws bytes per triangle against the speed of bounce rays, both axes logarithmic; the list is a line, as it has none.
+/// Draws bytes per triangle against the speed of bounce rays, both axes logarithmic; the list, far off the others on both,
+/// is mentioned.
 pub fn plot_bytes(path: &Path, report: &Report) -> Result<(), OutputError> {
-    let speed = |outcome: &Outcome| outcome.speeds[1];
-    let point = |(row, outcome): (&Row, &Outcome)| Series {
-        name: row.name.to_owned(),
-        points: vec![(outcome.per_triangle, speed(outcome))],
-    };
-    let (lists, trees): (Vec<_>, Vec<_>) = report.outcomes().map(point).partition(|series| series.points[0].0 <= 0.0);
+    /// Fewer bytes per triangle are no structure.
+    const LEAST: f64 = 0.5;
+    let trees: Vec<(&Row, (f64, f64))> = report
+        .outcomes()
+        .map(|(row, outcome)| (row, (outcome.per_triangle, outcome.speeds[1])))
+        .filter(|(_, (bytes, speed))| *bytes >= LEAST && speed.is_finite())
+        .collect();
+    let list = report.outcomes().next().map_or(f64::NAN, |(_, outcome)| outcome.speeds[1]);
     write(path, SIZE, |canvas| {
-        let title = format!("{}: bytes per triangle, million bounce rays per second", report.model);
-        let all = trees.iter().chain(&lists).flat_map(|series| &series.points);
-        let (x, y) = (range(all.clone().map(|point| point.0)), range(all.map(|point| point.1)));
+        let range = |value: fn(&(f64, f64)) -> f64| range(trees.iter().map(|(_, point)| value(point)));
+        let (x, y) = (range(|point| point.0), range(|point| point.1));
         let mut chart = ChartBuilder::on(canvas)
-            .caption(title, ("sans-serif", 20))
+            .caption(format!("{}: bytes and speed", report.model), ("sans-serif", 20))
             .margin(16)
             .x_label_area_size(40)
             .y_label_area_size(60)
             .build_cartesian_2d((x.0..x.1).log_scale(), (y.0..y.1).log_scale())?;
         chart
             .configure_mesh()
-            .x_desc("bytes per triangle")
+            .x_desc(format!("bytes per triangle; list (no bytes): {} million bounce rays per second", figure(list)))
             .x_label_formatter(&|x| figure(*x))
             .y_label_formatter(&|y| figure(*y))
             .y_desc("million bounce rays per second")
             .draw()?;
-        for (place, Series { name, points }) in trees.iter().enumerate() {
-            chart.draw_series(points.iter().map(|&point| {
-                EmptyElement::at(point)
-                    + Circle::new((0, 0), 5, color(place).filled())
-                    + Text::new(name.clone(), (8, -6), ("sans-serif", 14).into_font())
-            }))?;
+        for (place, (row, point)) in trees.iter().enumerate() {
+            let style = color(place).filled();
+            chart
+                .draw_series([Circle::new(*point, 6, style)])?
+                .label(row.name)
+                .legend(move |(x, y)| Circle::new((x + 8, y), 6, style));
         }
-        for Series { name, points } in &lists {
-            let level = points[0].1;
-            chart.draw_series(LineSeries::new([(x.0, level), (x.1, level)], BLACK))?;
-            let label = Text::new(format!("{name} (no bytes)"), (8, -16), ("sans-serif", 14).into_font());
-            chart.draw_series([EmptyElement::at((x.0, level)) + label])?;
-        }
+        let position = SeriesLabelPosition::LowerLeft;
+        chart
+            .configure_series_labels()
+            .position(position)
+            .background_style(WHITE.mix(0.8))
+            .border_style(BLACK)
+            .draw()?;
         Ok(())
     })
 }

@@ -49,15 +49,15 @@ impl Named {
     /// All of them, the list first: answers and speeds are compared with its own.
     pub const ALL: &[Self] = &[
         Self { is_candidate: false, ..Self::new("list", 0.0, |_| Plan::List) },
-        Self::new("grid", 0.5, |preset| Plan::Grid(tuned!(preset, grid::Options))),
-        Self::new("octree", 1.5, |preset| Plan::Octree(tuned!(preset, octree::Options))),
-        Self { is_candidate: false, ..Self::new("kdtree-midpoint", 0.5, |preset| kd(preset, Split::Midpoint)) },
-        Self { is_candidate: false, ..Self::new("kdtree-median", 0.5, |preset| kd(preset, Split::Median)) },
-        Self::new("kdtree", 0.5, |preset| kd(preset, Split::Sah)),
-        Self::new("kdtree-compact", 0.6, |preset| Plan::CompactKdTree(tuned!(preset, kdtree::Options))),
-        Self::new("bvh", 1.0, |preset| bvh(preset, Method::Sah)),
-        Self { is_candidate: false, ..Self::new("bvh-ploc", 1.0, |preset| bvh(preset, Method::Ploc)) },
-        Self::new("dual-split", 0.7, |preset| Plan::DualSplit(tuned!(preset, dualsplit::Options))),
+        Self::new("grid", 2.4, |preset| Plan::Grid(tuned!(preset, grid::Options))),
+        Self::new("octree", 1.6, |preset| Plan::Octree(tuned!(preset, octree::Options))),
+        Self { is_candidate: false, ..Self::new("kdtree-midpoint", 0.65, |preset| kd(preset, Split::Midpoint)) },
+        Self { is_candidate: false, ..Self::new("kdtree-median", 0.65, |preset| kd(preset, Split::Median)) },
+        Self::new("kdtree", 0.65, |preset| kd(preset, Split::Sah)),
+        Self::new("kdtree-compact", 0.75, |preset| Plan::CompactKdTree(tuned!(preset, kdtree::Options))),
+        Self::new("bvh", 1.25, |preset| bvh(preset, Method::Sah)),
+        Self { is_candidate: false, ..Self::new("bvh-ploc", 1.25, |preset| bvh(preset, Method::Ploc)) },
+        Self::new("dual-split", 0.85, |preset| Plan::DualSplit(tuned!(preset, dualsplit::Options))),
     ];
 
     /// One that `auto` may choose.
