@@ -3,7 +3,7 @@
 use core::hint::black_box;
 
 use hitscan::{
-    Accelerator, Arena, DualSplit, KdTree, List, Mesh, Primitives,
+    Accelerator, Arena, CompactKdTree, DualSplit, KdTree, List, Mesh, Primitives,
     accel::{Hierarchy, Inside, Step, Traversal},
     asset::{Asset, Stored},
     dualsplit, from_fn,
@@ -33,6 +33,9 @@ fn with<P: Primitives, E>(primitives: &Result<P, E>) {
     let options = options();
     black_box(KdTree::words(word() as usize, &options));
     arena.frame(|arena| tree(KdTree::build(primitives, arena, &options)));
+    arena.frame(|arena| compact(CompactKdTree::build(primitives, arena, &options)));
+    compact(CompactKdTree::build(primitives as &dyn Primitives, &mut arena, &options));
+    black_box(CompactKdTree::words(word() as usize, &options));
     tree(KdTree::build(&(primitives, primitives), &mut arena, &options));
     tree(KdTree::build(primitives as &dyn Primitives, &mut arena, &options));
     dual_split(primitives);
@@ -84,6 +87,7 @@ fn options() -> Options {
         leaf_size: word(),
         max_depth: black_box(Some(word())),
         intersection_cost: float(),
+        byte_cost: float(),
         empty_bonus: float(),
         clip: word() == 0,
         bytes_per_primitive: word(),
@@ -98,6 +102,30 @@ fn tree<E>(tree: Result<KdTree<'_>, E>) {
     black_box(ray().prepare().map(|ray| tree.traverse(&ray)));
 }
 
+fn compact<E>(tree: Result<CompactKdTree<'_>, E>) {
+    let Ok(tree) = tree else { return };
+    black_box((tree.node_words(), tree.reference_count(), tree.depth()));
+    black_box(CompactKdTree::open(tree.as_words()).is_ok());
+    let mut next = tree.root();
+    while let Some(cell) = next {
+        next = match Hierarchy::open(&tree, &cell) {
+            Inside::Cells([left, right]) => black_box(left.or(right)),
+            Inside::Leaf(leaf) => {
+                leaf.for_each(|primitive| _ = black_box(primitive));
+                None
+            }
+        };
+    }
+    let Some(ray) = ray().prepare() else { return };
+    let (mut walk, mut budget) = (tree.traverse(&ray), word());
+    while let Step::Leaf(leaf) = walk.step(&ray, float(), &mut budget) {
+        leaf.for_each(|primitive| _ = black_box(primitive));
+    }
+    while let Some(leaf) = walk.next_leaf(&ray, float()) {
+        leaf.for_each(|primitive| _ = black_box(primitive));
+    }
+}
+
 fn assets() {
     let (mut bytes, mut words) = (None, None);
     let bytes = some(|| word() as u8, &mut bytes);
@@ -106,10 +134,12 @@ fn assets() {
         asset.sections().for_each(|section| _ = black_box(section));
         read::<KdTree<'_>>(&asset);
         read::<DualSplit<'_>>(&asset);
+        read::<CompactKdTree<'_>>(&asset);
         read::<Mesh<'_>>(&asset);
         read::<Spheres<'_>>(&asset);
         read::<Materials<'_>>(&asset);
         black_box(asset.scene::<KdTree<'_>, Mesh<'_>>().is_ok());
+        black_box(asset.scene::<CompactKdTree<'_>, Mesh<'_>>().is_ok());
     }
 }
 

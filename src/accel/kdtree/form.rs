@@ -27,7 +27,7 @@ impl Form {
     pub(super) fn lattice(self, bounds: &Aabb) -> Option<Lattice> {
         match self {
             Self::Plain => None,
-            Self::Compact => Some(Lattice::over(bounds, [LAST_PLANE; 3])),
+            Self::Compact => Some(lattice(bounds)),
         }
     }
 
@@ -68,6 +68,11 @@ impl Form {
         };
         references.saturating_add((HEADER_WORDS + node) * 4 + 3) / 4 * 4
     }
+}
+
+/// The planes of a compact tree in `bounds`.
+pub(super) fn lattice(bounds: &Aabb) -> Lattice {
+    Lattice::over(bounds, [LAST_PLANE; 3])
 }
 
 /// Whether the words of so many nodes may be too far to be stepped over in 16 bits: each takes up to three.

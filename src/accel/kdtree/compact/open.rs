@@ -9,13 +9,13 @@ use crate::{
         Malformed, Reason,
         kdtree::{
             HEADER_WORDS, MAX_DEPTH,
-            form::{Form, reference_bytes},
+            form::{lattice, reference_bytes},
             open::Header,
         },
         leaf::References,
     },
     asset,
-    geometry::{Aabb, Lattice},
+    geometry::Aabb,
 };
 
 impl<'a> CompactKdTree<'a> {
@@ -101,7 +101,7 @@ impl<'a> CompactKdTree<'a> {
         if references.len() != reference_words as usize {
             return None;
         }
-        let lattice = Form::Compact.lattice(&header.bounds).unwrap_or(Lattice::over(&header.bounds, [1; 3]));
+        let lattice = lattice(&header.bounds);
         Some(Self {
             words,
             nodes,
