@@ -3,14 +3,16 @@
 use core::hint::black_box;
 
 use hitscan::{
-    Accelerator, Arena, Hit, Instance, Instances, KdTree, List, Mesh, Primitives, Scene,
-    accel::{Bounded, Hierarchy},
+    Accelerator, Arena, Hit, Instance, Instances, List, Mesh, Primitives, Scene,
+    accel::{Bounded, Hierarchy, Structure},
     geometry::Transform,
-    kdtree::Options,
     primitives::{Order, Proximity, Renumbering, Reordered, Spheres},
 };
 
-use crate::input::{float, matrix, ray, some, sphere, vector, word};
+use crate::{
+    input::{float, matrix, ray, some, sphere, vector, word},
+    plan,
+};
 
 /// Casts rays at meshes, spheres and both together, with and without a tree.
 pub fn all() {
@@ -41,10 +43,10 @@ fn with<P: Proximity>(primitives: &P) {
         }
     }
     let mut memory = [0; 1024];
-    if let Ok(tree) = KdTree::build(primitives, &mut Arena::new(black_box(memory.as_mut_slice())), &Options::default())
-    {
-        cast(Scene::new(tree, primitives));
-        near(Scene::new(tree, primitives));
+    let mut arena = Arena::new(black_box(memory.as_mut_slice()));
+    if let Ok(structure) = Structure::build(primitives, &mut arena, &plan::any()) {
+        cast(Scene::new(structure, primitives));
+        near(Scene::new(structure, primitives));
     }
 }
 

@@ -1,9 +1,6 @@
 //! Bounding volume hierarchies: equal to the list, before and after their primitives move; memory; open; quality.
-#![allow(missing_docs)]
 
-mod common;
-
-use common::{FAMILIES, Random, adversarial_mesh, adversarial_ray, bits, boxed, noise, point};
+use crate::common::{FAMILIES, Random, adversarial_mesh, adversarial_ray, bits, boxed, noise, point};
 use hitscan::{
     Accelerator, Arena, Bvh, Error, List, Mesh, Primitives, Ray, Scene, Traversal,
     accel::{Hierarchy, Inside, Reason, Step},
@@ -17,10 +14,6 @@ use hitscan::{
 };
 
 const METHODS: [Method; 2] = [Method::Sah, Method::Ploc];
-
-fn rays() -> usize {
-    std::env::var("HITSCAN_RAYS").ok().and_then(|n| n.parse().ok()).unwrap_or(1_000_000)
-}
 
 fn options(random: &mut Random) -> Options {
     let preset = random.pick(&[Options::small(), Options::balanced(), Options::fast()]);
@@ -56,7 +49,7 @@ fn mixed<'a>(mesh: Mesh<'a>, boxes: &'a [Aabb]) -> impl Primitives + 'a {
 fn hierarchies_answer_as_the_list() {
     let mut random = Random::new(1);
     let (mut cast, mut hits, mut pairs, mut scenes) = (0, 0, 0, 0);
-    while cast < rays() {
+    while cast < crate::rays() {
         let family = random.below(FAMILIES);
         let (vertices, triangles) = adversarial_mesh(&mut random, family, 48);
         let number = random.pick(&[0, 0, 9]);
@@ -85,7 +78,7 @@ fn hierarchies_answer_as_the_list() {
 #[test]
 fn ordered_hierarchies_answer_as_the_list_in_their_order() {
     let mut random = Random::new(2);
-    for _ in 0..rays() / 4000 {
+    for _ in 0..crate::rays() / 4000 {
         let family = random.below(FAMILIES);
         let (vertices, triangles) = adversarial_mesh(&mut random, family, 48);
         let words = built(&Mesh::new(&vertices, &triangles[..]).unwrap(), &options(&mut random));
@@ -149,7 +142,7 @@ fn a_walk_can_pause_anywhere() {
 #[test]
 fn a_refitted_hierarchy_answers_as_the_list_of_what_moved() {
     let mut random = Random::new(4);
-    for _ in 0..rays() / 2000 {
+    for _ in 0..crate::rays() / 2000 {
         let family = random.below(FAMILIES);
         let (mut vertices, triangles) = adversarial_mesh(&mut random, family, 48);
         let mut boxes: Vec<Aabb> = (0..random.pick(&[0, 5])).map(|_| boxed(&mut random, family)).collect();

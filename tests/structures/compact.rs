@@ -1,12 +1,9 @@
 //! The compact kD-tree: answers as the list, fits its memory and bytes, refuses what it cannot walk.
-#![allow(missing_docs)]
 
-mod common;
-
-use common::{FAMILIES, Random, adversarial_mesh, adversarial_ray, bits, boxed, noise};
+use crate::common::{FAMILIES, Random, adversarial_mesh, adversarial_ray, bits, boxed, noise};
 use hitscan::{
     Accelerator, Arena, CompactKdTree, KdTree, List, Mesh, Primitives, Ray, Scene, Traversal,
-    accel::{Hierarchy, Inside, MAX_LEVELS, Reason, Step},
+    accel::{Hierarchy, Inside, MAX_LEVELS, Plan, Reason, Step},
     arena::Full,
     error::BuildError,
     from_fn,
@@ -14,10 +11,6 @@ use hitscan::{
     glam::Vec3,
     kdtree::{Options, Split},
 };
-
-fn rays() -> usize {
-    std::env::var("HITSCAN_RAYS").ok().and_then(|n| n.parse().ok()).unwrap_or(1_000_000)
-}
 
 fn options(random: &mut Random) -> Options {
     let preset = random.pick(&[Options::small(), Options::balanced(), Options::fast()]);
@@ -46,7 +39,7 @@ fn compact_trees_answer_as_the_list() {
     let mut random = Random::new(41);
     let mut memory = vec![0; 1 << 16];
     let (mut cast, mut hits, mut nodes, mut scenes) = (0, 0, 0, 0);
-    while cast < rays() {
+    while cast < crate::rays() {
         let family = random.below(FAMILIES);
         let (mut vertices, triangles) = adversarial_mesh(&mut random, family, 48);
         let number = random.pick(&[0, 0, 12]);
@@ -300,7 +293,7 @@ fn exercise(words: &[u32]) -> Result<(), Reason> {
     let tree = CompactKdTree::open(words).map_err(|error| error.reason)?;
     let mut random = Random::new(9);
     for _ in 0..4 {
-        let ray = Ray::new(common::point(&mut random, 2), common::point(&mut random, 2));
+        let ray = Ray::new(crate::common::point(&mut random, 2), crate::common::point(&mut random, 2));
         let Some(ray) = ray.prepare() else { continue };
         let (mut walk, mut budget) = (tree.traverse(&ray), tree.node_words() as u32);
         loop {
@@ -389,9 +382,9 @@ fn what_is_baked_is_read_back() {
     use hitscan::{asset::Asset, bake};
     let (vertices, triangles) = soup(60, 0.5);
     let mesh = Mesh::new(&vertices, &triangles[..]).unwrap();
-    let words = bake::compact_kd_tree(&mesh, &Options::small()).unwrap();
+    let words = bake::build(&mesh, &Plan::CompactKdTree(Options::small())).unwrap();
     let tree = CompactKdTree::open(&words).unwrap();
-    let asset = bake::Baker::new().mesh(&mesh).compact_kd_tree(&tree).finish();
+    let asset = bake::Baker::new().mesh(&mesh).structure(tree).finish();
     let asset = Asset::from_words(&asset).unwrap();
     let scene: Scene<CompactKdTree, Mesh> = asset.scene().unwrap();
     assert_eq!(scene.accelerator().as_words(), words);

@@ -1,9 +1,6 @@
 //! The dual-split tree: exact, bounded, checked when opened, and worth its bytes.
-#![allow(missing_docs)]
 
-mod common;
-
-use common::{FAMILIES, Random, adversarial_mesh, adversarial_ray, bits, boxed, noise};
+use crate::common::{FAMILIES, Random, adversarial_mesh, adversarial_ray, bits, boxed, noise};
 use hitscan::{
     Accelerator, Arena, DualSplit, Hit, List, Mesh, Primitives, Ray, Scene, Span, Traversal,
     accel::{Hierarchy, Inside, MAX_LEVELS, Reason, Step},
@@ -14,10 +11,6 @@ use hitscan::{
     geometry::Aabb,
     glam::Vec3,
 };
-
-fn rays() -> usize {
-    std::env::var("HITSCAN_RAYS").ok().and_then(|n| n.parse().ok()).unwrap_or(1_000_000)
-}
 
 fn options(random: &mut Random) -> Options {
     let preset = random.pick(&[Options::small(), Options::balanced(), Options::fast()]);
@@ -69,7 +62,7 @@ fn dual_split_trees_answer_as_the_list() {
     let (mut memory, mut other) =
         (vec![0; DualSplit::words(100, &Options::balanced())], vec![0; DualSplit::words(100, &Options::balanced())]);
     let (mut cast, mut hits, mut nodes, mut scenes) = (0, 0, 0, 0);
-    while cast < rays() {
+    while cast < crate::rays() {
         let family = random.below(FAMILIES);
         let (vertices, triangles) = adversarial_mesh(&mut random, family, 48);
         let mesh = Mesh::new(&vertices, &triangles[..]).unwrap();
@@ -283,7 +276,7 @@ fn exercise(words: &[u32]) -> Result<(), Reason> {
     let mut random = Random::new(9);
     let all = from_fn(tree.primitives(), |_| Aabb::EMPTY, |_, _| None);
     for _ in 0..4 {
-        let ray = Ray::new(common::point(&mut random, 2), common::point(&mut random, 2));
+        let ray = Ray::new(crate::common::point(&mut random, 2), crate::common::point(&mut random, 2));
         let (_, visited) = paused(&tree, &all, &ray, 7);
         assert!(visited <= words.len(), "the walk visits a node twice");
     }

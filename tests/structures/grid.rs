@@ -1,9 +1,6 @@
 //! Grids answer as the list does, fit into what they promise, and refuse what is not a grid.
-#![allow(missing_docs)]
 
-mod common;
-
-use common::{FAMILIES, Random, adversarial_mesh, adversarial_ray, bits, boxed, noise};
+use crate::common::{FAMILIES, Random, adversarial_mesh, adversarial_ray, bits, boxed, noise};
 use hitscan::{
     Accelerator, Arena, Grid, Hit, List, Mesh, Primitives, Ray, Scene, Traversal,
     accel::{Cell, Hierarchy, Inside, MAX_LEVELS, Mailbox, Reason, Step},
@@ -15,10 +12,6 @@ use hitscan::{
     grid::{Form, Options},
     query::Progress,
 };
-
-fn rays() -> usize {
-    std::env::var("HITSCAN_RAYS").ok().and_then(|n| n.parse().ok()).unwrap_or(1_000_000)
-}
 
 fn options(random: &mut Random) -> Options {
     Options {
@@ -35,7 +28,7 @@ fn grids_answer_as_the_list() {
     let mut random = Random::new(1);
     let mut memory = vec![0; 1 << 16];
     let (mut cast, mut hits, mut cells, mut scenes) = (0, 0, 0, 0);
-    while cast < rays() {
+    while cast < crate::rays() {
         let family = random.below(FAMILIES);
         let (vertices, triangles) = adversarial_mesh(&mut random, family, 48);
         let mesh = Mesh::new(&vertices, &triangles[..]).unwrap();
@@ -76,7 +69,7 @@ fn grids_answer_as_the_list() {
 fn every_query_answers_as_the_list() {
     let mut random = Random::new(2);
     let mut memory = vec![0; 1 << 16];
-    for _ in 0..rays() / 4000 {
+    for _ in 0..crate::rays() / 4000 {
         let family = random.below(FAMILIES);
         let (vertices, triangles) = adversarial_mesh(&mut random, family, 40);
         let mesh = Mesh::new(&vertices, &triangles[..]).unwrap();
@@ -317,7 +310,7 @@ fn exercise(words: &[u32], primitives: &impl Primitives) -> Result<(), Reason> {
     let mut random = Random::new(9);
     if let Ok(scene) = Scene::new(grid, primitives) {
         for _ in 0..4 {
-            let ray = Ray::new(common::point(&mut random, 2), common::point(&mut random, 2));
+            let ray = Ray::new(crate::common::point(&mut random, 2), crate::common::point(&mut random, 2));
             assert!(matches!(scene.begin(&ray).advance(cells), Progress::Done(_)), "the walk visits a cell twice");
         }
     }

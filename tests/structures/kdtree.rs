@@ -1,9 +1,6 @@
 //! Memory: every arena size is enough or refused, and the bounds and budgets hold.
-#![allow(missing_docs)]
 
-mod common;
-
-use common::{FAMILIES, Random, adversarial_mesh, adversarial_ray, bits};
+use crate::common::{FAMILIES, Random, adversarial_mesh, adversarial_ray, bits};
 use hitscan::{
     Arena, KdTree, List, Mesh, Primitives, Scene,
     arena::Full,

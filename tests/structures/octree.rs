@@ -1,11 +1,8 @@
 //! Octrees: they answer as the list, fit their memory, refuse what is not an octree, and are worth their bytes.
-#![allow(missing_docs)]
-
-mod common;
 
 use std::f32::consts::{PI, TAU};
 
-use common::{FAMILIES, Random, adversarial_mesh, adversarial_ray, bits, boxed, noise};
+use crate::common::{FAMILIES, Random, adversarial_mesh, adversarial_ray, bits, boxed, noise};
 use hitscan::{
     Accelerator, Arena, Hit, List, Mesh, Octree, Primitives, Ray, Scene, Span, Traversal,
     accel::{Hierarchy, Inside, MAX_LEVELS, Reason, Step},
@@ -20,10 +17,6 @@ use hitscan::{
 };
 
 type Triangles = (Vec<Vec3>, Vec<[u32; 3]>);
-
-fn rays() -> usize {
-    std::env::var("HITSCAN_RAYS").ok().and_then(|n| n.parse().ok()).unwrap_or(1_000_000)
-}
 
 fn options(random: &mut Random) -> Options {
     let preset = random.pick(&[Options::small(), Options::balanced(), Options::fast()]);
@@ -57,7 +50,7 @@ fn octrees_answer_as_the_list() {
     let mut random = Random::new(1);
     let mut memory = vec![0; 1 << 16];
     let (mut cast, mut hits, mut nodes, mut scenes) = (0, 0, 0, 0);
-    while cast < rays() {
+    while cast < crate::rays() {
         let family = random.below(FAMILIES);
         let (vertices, triangles) = adversarial_mesh(&mut random, family, 48);
         let mesh = Mesh::new(&vertices, &triangles[..]).unwrap();

@@ -1,0 +1,18 @@
+//! What is peculiar to each structure: its memory, its words, its options, and that it is worth them.
+#![cfg(feature = "alloc")]
+#![allow(missing_docs)]
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod bvh;
+mod compact;
+mod dualsplit;
+mod grid;
+mod kdtree;
+mod octree;
+
+/// Rays for each comparison with the list; `tests/equality.rs` casts more at all structures.
+fn rays() -> usize {
+    std::env::var("HITSCAN_RAYS").ok().and_then(|n| n.parse().ok()).unwrap_or(100_000)
+}
