@@ -4,16 +4,17 @@
 
 mod common;
 
-use common::{Random, adversarial_mesh, adversarial_ray, point};
+use common::{Random, adversarial_mesh, adversarial_ray, plans, point};
 use hitscan::{
-    Error, KdTree, Mesh, Ray, Scene,
-    accel::{Plan, Reason},
+    Error, Instance, Instances, KdTree, List, Mesh, Ray, Scene,
+    accel::{Plan, Reason, Structure},
     asset::{Asset, AssetError, Kind},
     bake::{self, Baker},
-    geometry::Sphere,
-    glam::Vec3,
+    bvh, dualsplit,
+    geometry::{Sphere, Transform},
+    glam::{Mat3, Vec3},
     kdtree::Options,
-    primitives::Spheres,
+    primitives::{Reordered, Spheres},
     query::Progress,
     render::{Material, Materials, Numbers},
 };
@@ -99,15 +100,134 @@ fn baking_gives_the_same_bytes_everywhere() {
         .flat_map(|i| [[corner(i), corner(i) + 1, corner(i) + 13], [corner(i) + 1, corner(i) + 14, corner(i) + 13]])
         .collect();
     let mesh = Mesh::new(&vertices, &triangles[..]).unwrap();
-    let sums = [Options::small(), Options::balanced(), Options::fast()].map(|options| {
-        let tree = bake::build(&mesh, &Plan::KdTree(options)).unwrap();
-        checksum(&Baker::new().mesh(&mesh).structure(KdTree::open(&tree).unwrap()).finish())
-    });
+    let sums: Vec<u32> = plans::presets()
+        .iter()
+        .map(|(_, plan)| {
+            let words = bake::build(&mesh, plan).unwrap();
+            checksum(&Baker::new().mesh(&mesh).structure(opened(plan, &words)).finish())
+        })
+        .collect();
     assert_eq!(sums, SUMS);
 }
 
-/// Of the presets; they change when the format or a preset does.
-const SUMS: [u32; 3] = [1_838_739_061, 1_838_739_061, 717_152_610];
+/// Of the presets; they change when a format or a preset does.
+const SUMS: [u32; 21] = [
+    2_350_640_694,
+    89_361_254,
+    4_136_659_574,
+    1_794_264_101,
+    4_101_482_448,
+    3_509_241_922,
+    1_838_739_061,
+    1_838_739_061,
+    717_152_610,
+    435_669_169,
+    3_717_236_517,
+    3_930_788_390,
+    3_930_788_390,
+    4_237_771_640,
+    4_112_365_742,
+    1_940_061_394,
+    1_969_505_282,
+    2_536_439_377,
+    3_054_402_739,
+    3_518_396_112,
+    3_518_396_112,
+];
+
+fn opened<'a>(plan: &Plan, words: &'a [u32]) -> Structure<'a> {
+    Structure::open(plan.kind().unwrap(), words).unwrap()
+}
+
+#[test]
+fn every_structure_is_read_back() {
+    let (vertices, triangles) = soup(4, 60);
+    let mesh = Mesh::new(&vertices, &triangles[..]).unwrap();
+    for (name, plan) in plans::presets() {
+        let words = bake::build(&mesh, &plan).unwrap();
+        let structure = opened(&plan, &words);
+        let asset_words = Baker::new().mesh(&mesh).structure(structure).finish();
+        let asset = Asset::from_words(&asset_words).unwrap();
+        let scene = asset.scene::<Structure, Mesh>().unwrap();
+        let original = Scene::new(structure, &mesh).unwrap();
+        let mut random = Random::new(5);
+        for _ in 0..300 {
+            let ray = adversarial_ray(&mut random, 2, &vertices);
+            assert_eq!(scene.closest_hit(&ray), original.closest_hit(&ray), "{name}");
+        }
+        assert!(Structure::open(Kind::Vertices, &words).is_err());
+    }
+}
+
+#[test]
+fn reordered_triangles_keep_their_numbers_if_they_are_stored() {
+    let (vertices, triangles) = soup(6, 60);
+    let mesh = Mesh::new(&vertices, &triangles[..]).unwrap();
+    let original = Scene::new(List::new(&mesh).unwrap(), &mesh).unwrap();
+    for plan in [Plan::Bvh(bvh::Options::balanced()), Plan::DualSplit(dualsplit::Options::balanced())] {
+        let words = bake::build(&mesh, &plan).unwrap();
+        let (words, order) = bake::ordered(&opened(&plan, &words)).unwrap();
+        let corners = bake::reorder(&mesh, &order);
+        let reordered = Mesh::new(&vertices, &corners[..]).unwrap();
+        let baker = Baker::new().mesh(&reordered).structure(opened(&plan, &words));
+        let asset_words = baker.numbers(&order).finish();
+        let asset = Asset::from_words(&asset_words).unwrap();
+        let (plain, numbered) =
+            (asset.scene::<Structure, Mesh>().unwrap(), asset.scene::<Structure, Reordered<Mesh>>().unwrap());
+        let list = Scene::new(List::new(&reordered).unwrap(), &reordered).unwrap();
+        let mut random = Random::new(5);
+        for _ in 0..3000 {
+            let ray = adversarial_ray(&mut random, 2, &vertices);
+            assert_eq!(plain.closest_hit(&ray), list.closest_hit(&ray));
+            let hit = numbered.closest_hit(&ray);
+            assert_eq!(hit, original.closest_hit(&ray));
+            assert!(numbered.hits(&ray).eq(original.hits(&ray)));
+            if let Some(hit) = hit {
+                assert_eq!(numbered.surface(&ray, &hit), original.surface(&ray, &hit));
+            }
+        }
+        // What is not a permutation is refused.
+        let section = asset.section(Kind::Numbers).unwrap().as_ptr();
+        let first = asset_words.iter().position(|word| std::ptr::eq(word, section)).unwrap() + 1;
+        let mut damaged = asset_words.clone();
+        damaged[first] ^= 1;
+        let damaged = sealed(damaged);
+        let refused = Asset::from_words(&damaged).unwrap().scene::<Structure, Reordered<Mesh>>();
+        assert!(matches!(refused, Err(Error::Order(_))));
+    }
+}
+
+#[test]
+fn placed_scenes_are_read_back() {
+    let (vertices, triangles) = soup(7, 30);
+    let mesh = Mesh::new(&vertices, &triangles[..]).unwrap();
+    let plan = Plan::KdTree(Options::balanced());
+    let words = bake::build(&mesh, &plan).unwrap();
+    let scenes = [Scene::new(KdTree::open(&words).unwrap(), mesh).unwrap()];
+    let at = |i: i32| Transform::new(Mat3::from_rotation_y(i as f32), Vec3::splat(i as f32)).unwrap();
+    let mut placed: Vec<Instance> = (0..5).map(|i| Instance::new(0, at(i))).collect();
+    let instances = Instances::place(&scenes, &mut placed).unwrap();
+    let top = bake::build(&instances, &plan).unwrap();
+    let part = Baker::new().mesh(&mesh).structure(*scenes[0].accelerator());
+    let baker = Baker::new().part(part).instances(instances.placed()).structure(KdTree::open(&top).unwrap());
+    let asset_words = baker.finish();
+
+    let asset = Asset::from_words(&asset_words).unwrap();
+    let parts: Vec<_> = asset.parts().map(|part| part.unwrap().scene::<KdTree, Mesh>().unwrap()).collect();
+    let read = Instances::new(&parts, asset.read::<&[Instance]>().unwrap()).unwrap();
+    let scene = Scene::new(asset.read::<KdTree>().unwrap(), read).unwrap();
+    let original = Scene::new(List::new(&instances).unwrap(), instances).unwrap();
+    let mut random = Random::new(5);
+    let mut hits = 0;
+    for _ in 0..3000 {
+        let ray = adversarial_ray(&mut random, 2, &vertices);
+        hits += usize::from(scene.closest_hit(&ray).is_some());
+        assert_eq!(scene.closest_hit(&ray), original.closest_hit(&ray));
+    }
+    assert!(hits > 1000, "{hits}");
+    // Numbers that belong to other scenes.
+    assert!(Instances::new(&parts[..0], asset.read::<&[Instance]>().unwrap()).is_err());
+}
 
 #[test]
 fn every_truncation_and_every_extension_is_refused() {
