@@ -8,14 +8,14 @@ use hitscan::{
     Mesh,
     accel::Structure,
     asset::{Asset, Kind},
-    bake::Baker,
+    bake::{self, Baker},
 };
 
 use super::print;
 use crate::{
     failure::{self, Failure},
     output::{self, write_atomically},
-    scene::{Built, Choice, Geometry, Preset, Shape, Source},
+    scene::{Built, Choice, Palette, Preset, Shape, Source, broken},
     units::{count, parse_bytes},
 };
 
@@ -36,6 +36,9 @@ pub struct Bake {
     /// What the structure is tuned for
     #[arg(short, long, value_name = "PRESET", default_value = "balanced")]
     preset: Preset,
+    /// Keep the triangles' numbers where a structure (bvh, dual-split) puts them into another order, for 4 to 8 bytes each
+    #[arg(long)]
+    keep_numbers: bool,
     /// The most bytes that the asset may have, such as 64K; the structure is made to fit
     #[arg(long, value_name = "BYTES", value_parser = parse_bytes)]
     fit: Option<usize>,
@@ -50,11 +53,16 @@ impl Bake {
             return Err(Failure::new(what, "name the mesh it was made from"));
         };
         let mesh = source.view(&self.model)?.mesh;
-        let bare = bake(&mesh, geometry, None).len() * 4;
+        let unmoved: Vec<u32> = (0..mesh.indices().len() as u32).collect();
+        let bare = bake(&mesh, &geometry.palette, None, self.keep_numbers.then_some(&unmoved)).len() * 4;
         let most = self.fit.map(|most| room(most, bare)).transpose()?;
-        let built = Built::within(&mesh, self.structure, self.preset, most)?;
+        let (built, order) = Built::within(&mesh, self.structure, self.preset, most)?.ordered(&mesh)?;
+        let corners = bake::reorder(&mesh, &order);
+        let mesh = Mesh::new(mesh.vertices(), &corners[..]).map_err(broken)?;
         let structure = built.structure(&mesh)?;
-        let words = bake(&mesh, geometry, Some(structure));
+        let keeps = self.keep_numbers && order != unmoved;
+        let palette = if keeps { geometry.palette.clone() } else { geometry.palette.reordered(&order) };
+        let words = bake(&mesh, &palette, Some(structure), keeps.then_some(&order));
         if let Some(most) = self.fit.filter(|most| words.len() * 4 > *most) {
             let what = format!("--fit {most}: with this structure ({}) it takes {} bytes", built.name, words.len() * 4);
             return Err(Failure::new(what, "allow more bytes, or choose another structure, such as kdtree"));
@@ -82,13 +90,16 @@ fn too_small(most: usize, least: usize) -> Failure {
     Failure::new(what, "allow more bytes, or simplify the mesh")
 }
 
-fn bake(mesh: &Mesh<'_>, geometry: &Geometry, structure: Option<Structure<'_>>) -> Vec<u32> {
+fn bake(mesh: &Mesh<'_>, palette: &Palette, structure: Option<Structure<'_>>, numbers: Option<&Vec<u32>>) -> Vec<u32> {
     let mut baker = Baker::new().mesh(mesh);
     if let Some(structure) = structure {
         baker = baker.structure(structure);
     }
-    if !geometry.palette.materials.is_empty() {
-        baker = baker.materials(&geometry.palette.materials, geometry.palette.as_numbers());
+    if let Some(numbers) = numbers {
+        baker = baker.numbers(numbers);
+    }
+    if !palette.materials.is_empty() {
+        baker = baker.materials(&palette.materials, palette.as_numbers());
     }
     baker.finish()
 }

@@ -112,7 +112,11 @@ impl Cast {
         let source = Source::load(&self.model)?;
         let view = source.view(&self.model)?;
         let built = view.build(self.structure.structure, self.structure.preset)?;
-        let scene = built.scene(&view.mesh)?;
+        let renumbered = view.renumbered(view.mesh)?;
+        let scene = match &renumbered {
+            Some(triangles) => built.scene(triangles)?,
+            None => built.scene(&view.mesh)?,
+        };
         let (hits, took) = self.cast(&*scene, &rays)?;
 
         match self.csv {

@@ -136,7 +136,11 @@ impl Render {
         let built = view.build(self.structure.structure, self.structure.preset)?;
         let normals = if self.smooth { Smooth::normals(&view.mesh) } else { Vec::new() };
         let shaded = Smooth::new(view.mesh, &normals);
-        let scene = built.scene(&shaded)?;
+        let renumbered = view.renumbered(shaded)?;
+        let scene = match &renumbered {
+            Some(triangles) => built.scene(triangles)?,
+            None => built.scene(&shaded)?,
+        };
         let primitives = view.mesh.len();
 
         let bounds = scene.bounds();

@@ -43,6 +43,12 @@ impl Palette {
         self.numbers.resize(self.numbers.len() + primitives, number);
     }
 
+    /// The same for primitives in another order.
+    pub fn reordered(&self, order: &[u32]) -> Self {
+        let numbers = order.iter().filter_map(|&number| self.numbers.get(number as usize).copied()).collect();
+        Self { numbers, ..self.clone() }
+    }
+
     /// The numbers, as the library and the assets take them.
     pub fn as_numbers(&self) -> Numbers<'_> {
         if self.numbers.is_empty() { Numbers::First } else { Numbers::Wide(&self.numbers) }

@@ -5,11 +5,11 @@ use hitscan::{
     accel::Structure,
     asset::{Asset, AssetError, Kind},
     glam::Vec3,
-    primitives::Indices,
+    primitives::{Indices, Primitives, Renumbering, Reordered},
     render::Materials,
 };
 
-use super::{Built, Choice, Palette, Preset};
+use super::{Built, Choice, Palette, Preset, broken};
 use crate::{
     failure::{Failure, warn},
     input,
@@ -100,6 +100,8 @@ pub struct View<'a> {
     pub materials: Option<Materials<'a>>,
     /// The structure of an asset, if it has one.
     pub structure: Option<Structure<'a>>,
+    /// The numbers that the triangles of an asset had in its model, if it keeps them.
+    pub renumbering: Option<Renumbering<'a>>,
     /// Whether y is up by definition.
     pub y_up: bool,
     /// What it took to check the asset.
@@ -145,7 +147,7 @@ impl Source {
                 let palette = &geometry.palette;
                 let materials = (!palette.materials.is_empty()).then(|| palette.as_materials());
                 let mesh = geometry.mesh().map_err(name)?;
-                Ok(View { mesh, materials, structure: None, y_up: geometry.y_up, seconds: 0.0 })
+                Ok(View { mesh, materials, structure: None, renumbering: None, y_up: geometry.y_up, seconds: 0.0 })
             }
             Self::Asset(words) => {
                 let progress = Progress::spinner("checking the asset …");
@@ -160,13 +162,19 @@ impl Source {
                     Err(Error::Asset(AssetError::Missing { .. })) => None,
                     Err(error) => return Err(damaged(error)),
                 };
-                Ok(View { mesh, materials, structure, y_up: false, seconds: progress.finish() })
+                let renumbering = has(Kind::Numbers).then(|| asset.read().map_err(damaged)).transpose()?;
+                Ok(View { mesh, materials, structure, renumbering, y_up: false, seconds: progress.finish() })
             }
         }
     }
 }
 
-impl View<'_> {
+impl<'a> View<'a> {
+    /// `shapes`, which stand in the mesh's order, with the numbers that they had in the model; none if it is the same.
+    pub fn renumbered<P: Primitives>(&self, shapes: P) -> Result<Option<Reordered<'a, P>>, Failure> {
+        self.renumbering.map(|numbers| Reordered::new(shapes, numbers).map_err(broken)).transpose()
+    }
+
     /// The structure that was asked for: the asset's own unless another was named.
     pub fn build(&self, choice: Option<Choice>, preset: Preset) -> Result<Built, Failure> {
         match (choice, &self.structure) {
