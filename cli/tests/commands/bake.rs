@@ -104,3 +104,42 @@ const TWICE: &str = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[
     "bufferViews":[{"buffer":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":12}],
     "accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3","min":[0,0,0],"max":[1,1,0]},
     {"bufferView":1,"componentType":5123,"count":6,"type":"SCALAR"}]}"#;
+
+/// A wavy sheet of 2 x 12 x 12 triangles in stripes of two materials.
+fn sheet() -> String {
+    let corner = |i: u32| format!("v {} {} {}\n", i % 13, (i * 7 % 11) as f32 / 4.0, i / 13);
+    let mut text = String::from("mtllib sheet.mtl\n");
+    (0..169).for_each(|i| text += &corner(i));
+    for i in 0..144 {
+        let a = i / 12 * 13 + i % 12 + 1;
+        let (b, c, d) = (a + 1, a + 13, a + 14);
+        text += &format!("usemtl {}\nf {a} {c} {b}\nf {b} {c} {d}\n", ["red", "blue"][i as usize % 2]);
+    }
+    text
+}
+
+#[test]
+fn triangles_that_stand_in_another_order_keep_their_materials_and_if_asked_their_numbers() {
+    let folder = Folder::new();
+    folder.write("sheet.obj", sheet());
+    folder.write("sheet.mtl", "newmtl red\nKd 1 0 0\nnewmtl blue\nKd 0 0 1\n");
+    let down = |i: u32| [(i % 50) as f32 * 0.25, 9.0, (i / 50) as f32 * 0.25, 0.01, -1.0, 0.02];
+    folder.write_rays("down.rays", &(0..2500).map(down).collect::<Vec<_>>());
+    folder.succeed("cast sheet.obj down.rays -o reference.bin -s list");
+    folder.succeed("render sheet.obj -o reference.png --size 60x40");
+    for structure in ["bvh", "bvh-ploc", "dual-split"] {
+        folder.succeed(&format!("bake sheet.obj -o plain.hits -s {structure}"));
+        folder.succeed(&format!("bake sheet.obj -o kept.hits -s {structure} --keep-numbers"));
+        let more = folder.read("kept.hits").len() - folder.read("plain.hits").len();
+        assert!((288 * 4..288 * 4 + 48).contains(&more), "{structure}: {more}");
+        for asset in ["plain.hits", "kept.hits"] {
+            folder.succeed(&format!("cast {asset} down.rays -o other.bin"));
+            let (other, reference) = (folder.read("other.bin"), folder.read("reference.bin"));
+            let parameters = |hits: &[u8]| hits.chunks(8).map(|hit| hit[..4].to_vec()).collect::<Vec<_>>();
+            assert!(parameters(&other) == parameters(&reference), "{structure} {asset}");
+            assert_eq!(other == reference, asset == "kept.hits", "{structure} {asset}");
+            folder.succeed(&format!("render {asset} -o other.png --size 60x40"));
+            assert!(folder.read("other.png") == folder.read("reference.png"), "{structure} {asset}");
+        }
+    }
+}
