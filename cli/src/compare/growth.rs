@@ -12,9 +12,9 @@ use crate::{
 /// Triangles of the terrains.
 pub const SIZES: [u32; 7] = [1000, 4000, 16_000, 64_000, 250_000, 1_000_000, 4_000_000];
 
-/// Measures all rows over terrains of so many triangles.
+/// Measures all structures over terrains of so many triangles.
 pub fn growth(sizes: &[u32], preset: Preset, rays: usize, rounds: usize) -> Result<Vec<Report>, Failure> {
-    let rows = Row::all();
+    let rows = Row::plain();
     let measure = |&size: &u32| {
         let geometry = terrain(size);
         let mesh = geometry.mesh()?;
@@ -29,7 +29,7 @@ pub fn growth(sizes: &[u32], preset: Preset, rays: usize, rounds: usize) -> Resu
 fn render(reports: &[Report], what: &str, value: impl Fn(&Outcome) -> f64, cell: impl Fn(f64) -> String) -> String {
     let sizes = reports.iter().map(|report| count(report.triangles));
     let mut table = Table::new([what.to_owned()].into_iter().chain(sizes).chain(["growth".to_owned()]));
-    for (place, row) in Row::all().iter().enumerate() {
+    for (place, row) in Row::plain().iter().enumerate() {
         let values: Vec<f64> =
             reports.iter().map(|report| report.entries[place].1.as_ref().map_or(f64::NAN, &value)).collect();
         let grown = values.last().zip(values.first()).map_or(f64::NAN, |(last, first)| last / first);

@@ -116,7 +116,7 @@ fn series(reports: &[Report], value: impl Fn(&Outcome) -> f64) -> Vec<Series> {
             |report: &Report| Some((f64::from(report.triangles), value(report.entries[place].1.as_ref().ok()?)));
         Series { name: row.name.to_owned(), points: reports.iter().filter_map(point).collect() }
     };
-    Row::all().iter().enumerate().map(line).collect()
+    Row::plain().iter().enumerate().map(line).collect()
 }
 
 /// Lines over the number of triangles, and dashed guides: from the first point of the first or of the last line.

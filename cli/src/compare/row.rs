@@ -71,6 +71,11 @@ impl Row {
         Named::ALL.iter().flat_map(|named| std::iter::once(plain(named)).chain(around(named))).collect()
     }
 
+    /// The structures themselves: what is put around them does not grow otherwise.
+    pub fn plain() -> Vec<Self> {
+        Self::all().into_iter().filter(|row| row.name == row.named.name).collect()
+    }
+
     /// Whether it is a structure with nothing around it that `auto` may choose.
     pub fn is_candidate(&self) -> bool {
         self.named.is_candidate && self.name == self.named.name
