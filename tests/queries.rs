@@ -8,12 +8,12 @@ use std::cell::Cell;
 use common::{FAMILIES, Random, adversarial_mesh, adversarial_ray, bits, boxed, coordinate, noise, plans, point};
 use hitscan::{
     Accelerator, Arena, Hit, KdTree, List, Mesh, PreparedRay, Primitives, Ray, Scene, Span,
-    accel::Mailbox,
+    accel::{self, Mailbox},
     from_fn,
     geometry::{Aabb, Sphere, Triangle},
     glam::Vec3,
     kdtree::Options,
-    primitives::{Sides, Spheres},
+    primitives::{self, Sides, Spheres},
     query::Progress,
 };
 
@@ -345,5 +345,30 @@ fn budgets_bound_the_work() {
         let (tests, progress) =
             tests_within(budget, |row| KdTree::build(row, &mut Arena::new(&mut memory), &options).unwrap());
         assert!(tests <= budget && progress == Progress::Paused, "{tests} tests for {budget} nodes of a tree");
+    }
+}
+
+#[test]
+fn pauses_change_neither_counts_nor_hits() {
+    let mut random = Random::new(6);
+    let mut memory = vec![0; 1 << 15];
+    for kind in 0..plans::KINDS {
+        let (vertices, triangles) = adversarial_mesh(&mut random, 2, 40);
+        let mesh = Mesh::new(&vertices, &triangles[..]).unwrap();
+        let Some((plan, built)) = plans::build(&mut random, kind, &mesh, &mut memory) else { continue };
+        let (nodes, tests) = (Cell::new(0), Cell::new(0));
+        let plain = Scene::new(built, &mesh).unwrap();
+        let counted = Scene::new(accel::Counted::new(built, &nodes), primitives::Counted::new(&mesh, &tests)).unwrap();
+        let taken = || (nodes.take(), tests.take());
+        for _ in 0..50 {
+            let ray = adversarial_ray(&mut random, 2, &vertices);
+            let hit = counted.closest_hit(&ray);
+            assert_eq!(bits(hit), bits(plain.closest_hit(&ray)), "{plan:?}");
+            let whole = taken();
+            assert!(whole.0 > 0 || hit.is_none());
+            let (paused, _) = in_parts(&counted, &ray, 1);
+            // Asked once more at its end.
+            assert_eq!((bits(paused), taken()), (bits(hit), whole), "{plan:?}");
+        }
     }
 }

@@ -99,38 +99,3 @@ impl<T: Traversal> Traversal for CountedTraversal<'_, T> {
 fn add(count: &Count<u64>, more: u64) {
     count.set(count.get().saturating_add(more));
 }
-
-#[cfg(test)]
-mod tests {
-    use glam::Vec3;
-
-    use super::*;
-    use crate::{Arena, KdTree, Mesh, Ray, Scene, kdtree::Options, primitives, query::Progress};
-
-    #[test]
-    fn pauses_change_neither_counts_nor_hits() {
-        let vertices: [Vec3; 24] = core::array::from_fn(|i| Vec3::new((i * 7 % 24) as f32, (i % 5) as f32, i as f32));
-        let triangles: [[u16; 3]; 22] = core::array::from_fn(|i| [i, i + 1, i + 2].map(|corner| corner as u16));
-        let mesh = Mesh::new(&vertices, &triangles).unwrap();
-        let mut memory = [0; 4000];
-        let tree = KdTree::build(&mesh, &mut Arena::new(&mut memory), &Options::fast()).unwrap();
-        let (nodes, tests) = (Count::new(0), Count::new(0));
-        let plain = Scene::new(tree, &mesh).unwrap();
-        let counted = Scene::new(Counted::new(tree, &nodes), primitives::Counted::new(&mesh, &tests)).unwrap();
-        let taken = || (nodes.take(), tests.take());
-        for i in 0..50_u8 {
-            let ray = Ray::between(Vec3::new(12.0, 2.0, -5.0), Vec3::new(f32::from(i % 24), 2.2, f32::from(i)));
-            let hit = counted.closest_hit(&ray);
-            assert_eq!(hit, plain.closest_hit(&ray));
-            let whole = taken();
-            assert!(whole.0 > 0 || hit.is_none());
-            let mut query = counted.begin(&ray);
-            let paused = loop {
-                if let Progress::Done(hit) = query.advance(1) {
-                    break hit;
-                }
-            };
-            assert_eq!((paused, taken()), (hit, whole));
-        }
-    }
-}
