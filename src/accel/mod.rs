@@ -15,6 +15,7 @@ mod list;
 mod mailbox;
 mod malformed;
 pub mod octree;
+mod segment;
 mod sort;
 mod structure;
 

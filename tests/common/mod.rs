@@ -3,6 +3,7 @@
 
 use hitscan::{Hit, Ray, geometry::Aabb, glam::Vec3};
 
+pub mod meshes;
 pub mod plans;
 
 /// A hit for comparisons that tell -0 from 0.

@@ -1,5 +1,6 @@
 //! Bounding volume hierarchies: equal to the list, before and after their primitives move; memory; open; quality.
 
+use crate::common::meshes::{Triangles, crossing, identical, separate, sheet};
 use crate::common::{FAMILIES, Random, adversarial_mesh, adversarial_ray, bits, boxed, noise, point};
 use hitscan::{
     Accelerator, Arena, Bvh, Error, List, Mesh, Primitives, Ray, Scene, Traversal,
@@ -170,23 +171,6 @@ fn a_refitted_hierarchy_answers_as_the_list_of_what_moved() {
             }
         }
     }
-}
-
-/// Triangles with corners of their own.
-fn separate(vertices: Vec<Vec3>) -> (Vec<Vec3>, Vec<[u32; 3]>) {
-    let triangles = (0..vertices.len() as u32 / 3).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
-    (vertices, triangles)
-}
-
-fn identical(count: usize) -> (Vec<Vec3>, Vec<[u32; 3]>) {
-    separate([Vec3::new(-2.0, -2.0, 0.0), Vec3::new(2.0, -2.0, 1.0), Vec3::new(0.0, 2.0, 0.5)].repeat(count))
-}
-
-/// Large triangles around the same middle.
-fn crossing(count: usize) -> (Vec<Vec3>, Vec<[u32; 3]>) {
-    let mut random = Random::new(9);
-    let mut point = || Vec3::from_array([0; 3].map(|_| random.unit() * 20.0 - 10.0));
-    separate((0..count).map(|_| [point(), point()]).flat_map(|[a, b]| [a, b - a, -b]).collect())
 }
 
 /// Each half as large and half as far as the one before.
@@ -459,18 +443,6 @@ fn structured_lies_are_refused() {
         words[word] = 17;
         assert!(exercise(&words).is_err());
     }
-}
-
-/// A rippled sheet of `side` x `side` squares.
-fn sheet(side: u32) -> (Vec<Vec3>, Vec<[u32; 3]>) {
-    let row = side + 1;
-    let height = |x: u32, z: u32| ((x * 7 + z * 5) % 11 + (x / 9 * 13 + z / 7 * 3) % 17) as f32 / 8.0;
-    let vertices = (0..row * row).map(|i| Vec3::new((i % row) as f32, height(i % row, i / row), (i / row) as f32));
-    let triangles = (0..side * side).flat_map(|i| {
-        let corner = i / side * row + i % side;
-        [[corner, corner + 1, corner + row], [corner + 1, corner + row + 1, corner + row]]
-    });
-    (vertices.collect(), triangles.collect())
 }
 
 /// Bytes per triangle without the list, and the steps and tests expected of a ray through the bounds.

@@ -1,5 +1,6 @@
 //! The compact kD-tree: answers as the list, fits its memory and bytes, refuses what it cannot walk.
 
+use crate::common::meshes::{Triangles, crossing, identical};
 use crate::common::{FAMILIES, Random, adversarial_mesh, adversarial_ray, bits, boxed, noise};
 use hitscan::{
     Accelerator, Arena, CompactKdTree, KdTree, List, Mesh, Primitives, Ray, Scene, Traversal,
@@ -147,19 +148,6 @@ fn soup(count: usize, size: f32) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     let mut random = Random::new(count as u64);
     let mut point = |scale: f32| Vec3::from_array([0; 3].map(|_| (random.unit() - 0.5) * scale));
     let vertices = (0..count).flat_map(|_| [point(2.0); 3].map(|v| v + point(size))).collect();
-    (vertices, (0..count as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect())
-}
-
-fn identical(count: usize) -> (Vec<Vec3>, Vec<[u32; 3]>) {
-    let corners = vec![Vec3::new(-2.0, -2.0, 0.0), Vec3::new(2.0, -2.0, 1.0), Vec3::new(0.0, 2.0, 0.5)];
-    (corners, vec![[0, 1, 2]; count])
-}
-
-/// Large triangles through one point.
-fn crossing(count: usize) -> (Vec<Vec3>, Vec<[u32; 3]>) {
-    let mut random = Random::new(9);
-    let mut point = || Vec3::from_array([0; 3].map(|_| random.unit() * 20.0 - 10.0));
-    let vertices = (0..count).map(|_| [point(), point()]).flat_map(|[a, b]| [a, b - a, -b]).collect();
     (vertices, (0..count as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect())
 }
 

@@ -1,5 +1,6 @@
 //! The dual-split tree: exact, bounded, checked when opened, and worth its bytes.
 
+use crate::common::meshes::{separate, sheet};
 use crate::common::{FAMILIES, Random, adversarial_mesh, adversarial_ray, bits, boxed, noise};
 use hitscan::{
     Accelerator, Arena, DualSplit, Hit, List, Mesh, Primitives, Ray, Scene, Span, Traversal,
@@ -23,11 +24,6 @@ fn options(random: &mut Random) -> Options {
 
 fn build<'m, P: Primitives>(primitives: &P, memory: &'m mut [u32], options: &Options) -> DualSplit<'m> {
     DualSplit::build(primitives, &mut Arena::new(memory), options).unwrap()
-}
-
-fn separate(vertices: Vec<Vec3>) -> (Vec<Vec3>, Vec<[u32; 3]>) {
-    let triangles = (0..vertices.len() as u32 / 3).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
-    (vertices, triangles)
 }
 
 /// The closest hit by a walk that pauses every few nodes; how many it visited.
@@ -368,18 +364,6 @@ fn structured_lies_are_refused() {
     assert_eq!(reason(&|words| words[0] += 1), Err(Reason::Length));
     assert_eq!(reason(&|words| words[1] += 2), Err(Reason::Length));
     assert_eq!(reason(&|words| *words.last_mut().unwrap() = u32::MAX), Err(Reason::Primitive));
-}
-
-/// A rippled sheet of `side` x `side` squares.
-fn sheet(side: u32) -> (Vec<Vec3>, Vec<[u32; 3]>) {
-    let row = side + 1;
-    let height = |x: u32, z: u32| ((x * 7 + z * 5) % 11 + (x / 9 * 13 + z / 7 * 3) % 17) as f32 / 8.0;
-    let vertices = (0..row * row).map(|i| Vec3::new((i % row) as f32, height(i % row, i / row), (i / row) as f32));
-    let triangles = (0..side * side).flat_map(|i| {
-        let corner = i / side * row + i % side;
-        [[corner, corner + 1, corner + row], [corner + 1, corner + row + 1, corner + row]]
-    });
-    (vertices.collect(), triangles.collect())
 }
 
 /// Bytes per triangle in the ordered form, and nodes and tests per ray from above and along the sheet.

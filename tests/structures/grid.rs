@@ -1,5 +1,6 @@
 //! Grids answer as the list does, fit into what they promise, and refuse what is not a grid.
 
+use crate::common::meshes::{Triangles, crossing, hair, identical, random, separate};
 use crate::common::{FAMILIES, Random, adversarial_mesh, adversarial_ray, bits, boxed, noise};
 use hitscan::{
     Accelerator, Arena, Grid, Hit, List, Mesh, Primitives, Ray, Scene, Traversal,
@@ -106,37 +107,6 @@ fn finish(mut advance: impl FnMut() -> Progress) -> Option<Hit> {
             return hit;
         }
     }
-}
-
-type Triangles = (Vec<Vec3>, Vec<[u32; 3]>);
-
-fn separate(vertices: Vec<Vec3>) -> Triangles {
-    let triangles = (0..vertices.len() as u32 / 3).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
-    (vertices, triangles)
-}
-
-fn random(count: usize, size: f32) -> Triangles {
-    let mut random = Random::new(count as u64);
-    let mut point = |scale: f32| Vec3::from_array([0; 3].map(|_| (random.unit() - 0.5) * scale));
-    separate((0..count).flat_map(|_| [point(2.0); 3].map(|v| v + point(size))).collect())
-}
-
-fn identical(count: usize) -> Triangles {
-    separate([Vec3::new(-2.0, -2.0, 0.0), Vec3::new(2.0, -2.0, 1.0), Vec3::new(0.0, 2.0, 0.5)].repeat(count))
-}
-
-/// Thin diagonals through the whole scene.
-fn hair(count: usize) -> Triangles {
-    let mut random = Random::new(7);
-    let mut shift = || Vec3::from_array([0; 3].map(|_| random.unit() * 0.1));
-    separate((0..count).map(|_| shift()).flat_map(|v| [v - 9.0, v + 9.0, v + 9.0 + Vec3::X * 1.0e-3]).collect())
-}
-
-/// Large triangles through one point.
-fn crossing(count: usize) -> Triangles {
-    let mut random = Random::new(9);
-    let mut point = || Vec3::from_array([0; 3].map(|_| random.unit() * 20.0 - 10.0));
-    separate((0..count).map(|_| [point(), point()]).flat_map(|[a, b]| [a, b - a, -b]).collect())
 }
 
 /// Each half as large and as far from the corner as the one before.

@@ -1,5 +1,6 @@
 //! Memory: every arena size is enough or refused, and the bounds and budgets hold.
 
+use crate::common::meshes::{Triangles, crossing, hair, identical, random, separate};
 use crate::common::{FAMILIES, Random, adversarial_mesh, adversarial_ray, bits};
 use hitscan::{
     Arena, KdTree, List, Mesh, Primitives, Scene,
@@ -10,37 +11,6 @@ use hitscan::{
     kdtree::{Options, Split},
     primitives::Spheres,
 };
-
-type Triangles = (Vec<Vec3>, Vec<[u32; 3]>);
-
-fn separate(vertices: Vec<Vec3>) -> Triangles {
-    let triangles = (0..vertices.len() as u32 / 3).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
-    (vertices, triangles)
-}
-
-fn random(count: usize, size: f32) -> Triangles {
-    let mut random = Random::new(count as u64);
-    let mut point = |scale: f32| Vec3::from_array([0; 3].map(|_| (random.unit() - 0.5) * scale));
-    separate((0..count).flat_map(|_| [point(2.0); 3].map(|v| v + point(size))).collect())
-}
-
-fn identical(count: usize) -> Triangles {
-    separate([Vec3::new(-2.0, -2.0, 0.0), Vec3::new(2.0, -2.0, 1.0), Vec3::new(0.0, 2.0, 0.5)].repeat(count))
-}
-
-/// Large triangles around the same middle.
-fn crossing(count: usize) -> Triangles {
-    let mut random = Random::new(9);
-    let mut point = || Vec3::from_array([0; 3].map(|_| random.unit() * 20.0 - 10.0));
-    separate((0..count).map(|_| [point(), point()]).flat_map(|[a, b]| [a, b - a, -b]).collect())
-}
-
-/// Thin diagonals through the whole scene.
-fn hair(count: usize) -> Triangles {
-    let mut random = Random::new(7);
-    let mut shift = || Vec3::from_array([0; 3].map(|_| random.unit() * 0.1));
-    separate((0..count).map(|_| shift()).flat_map(|v| [v - 9.0, v + 9.0, v + 9.0 + Vec3::X * 1.0e-3]).collect())
-}
 
 fn all_options() -> impl Iterator<Item = Options> {
     let base = [Options::small(), Options::balanced(), Options::fast()];

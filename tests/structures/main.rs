@@ -11,6 +11,7 @@ mod dualsplit;
 mod grid;
 mod kdtree;
 mod octree;
+mod quality;
 
 /// Rays for each comparison with the list; `tests/equality.rs` casts more at all structures.
 fn rays() -> usize {

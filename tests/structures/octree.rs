@@ -2,6 +2,7 @@
 
 use std::f32::consts::{PI, TAU};
 
+use crate::common::meshes::{Triangles, crossing, hair, identical, random, separate, shrinking};
 use crate::common::{FAMILIES, Random, adversarial_mesh, adversarial_ray, bits, boxed, noise};
 use hitscan::{
     Accelerator, Arena, Hit, List, Mesh, Octree, Primitives, Ray, Scene, Span, Traversal,
@@ -15,8 +16,6 @@ use hitscan::{
     primitives::Spheres,
     query::Progress,
 };
-
-type Triangles = (Vec<Vec3>, Vec<[u32; 3]>);
 
 fn options(random: &mut Random) -> Options {
     let preset = random.pick(&[Options::small(), Options::balanced(), Options::fast()]);
@@ -104,41 +103,6 @@ fn pauses_change_nothing() {
             assert_eq!(bits(paused), bits(scene.closest_hit(&ray)));
         }
     }
-}
-
-fn separate(vertices: Vec<Vec3>) -> Triangles {
-    let triangles = (0..vertices.len() as u32 / 3).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
-    (vertices, triangles)
-}
-
-fn random(count: usize, size: f32) -> Triangles {
-    let mut random = Random::new(count as u64);
-    let mut point = |scale: f32| Vec3::from_array([0; 3].map(|_| (random.unit() - 0.5) * scale));
-    separate((0..count).flat_map(|_| [point(2.0); 3].map(|v| v + point(size))).collect())
-}
-
-fn identical(count: usize) -> Triangles {
-    separate([Vec3::new(-2.0, -2.0, 0.0), Vec3::new(2.0, -2.0, 1.0), Vec3::new(0.0, 2.0, 0.5)].repeat(count))
-}
-
-/// Large triangles around the same middle.
-fn crossing(count: usize) -> Triangles {
-    let mut random = Random::new(9);
-    let mut point = || Vec3::from_array([0; 3].map(|_| random.unit() * 20.0 - 10.0));
-    separate((0..count).map(|_| [point(), point()]).flat_map(|[a, b]| [a, b - a, -b]).collect())
-}
-
-/// Thin diagonals through the whole scene.
-fn hair(count: usize) -> Triangles {
-    let mut random = Random::new(7);
-    let mut shift = || Vec3::from_array([0; 3].map(|_| random.unit() * 0.1));
-    separate((0..count).map(|_| shift()).flat_map(|v| [v - 9.0, v + 9.0, v + 9.0 + Vec3::X * 1.0e-3]).collect())
-}
-
-/// Each half the size of the one before.
-fn shrinking(count: usize) -> Triangles {
-    let corners = |i: usize| [Vec3::X, Vec3::Y, Vec3::ONE].map(|v| v * 0.5_f32.powi((i % 140) as i32));
-    separate((0..count).flat_map(corners).collect())
 }
 
 fn all_options() -> impl Iterator<Item = Options> {

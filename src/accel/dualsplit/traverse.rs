@@ -1,11 +1,15 @@
 use super::{DualSplit, MAX_DEPTH, node::Head};
 use crate::{
-    accel::{Leaf, Step, Traversal, leaf::References},
+    accel::{
+        Leaf, Step, Traversal,
+        leaf::References,
+        segment::{Segment, Waiting},
+    },
     geometry::{Lattice, PreparedRay, beyond, slack},
     math::{greatest, least},
 };
 
-/// The walk through a [`DualSplit`]: front to back, a stack of ranges that wait.
+/// The walk through a [`DualSplit`]: front to back, a stack of segments that wait.
 #[derive(Clone, Debug)]
 pub struct DualSplitTraversal<'a> {
     nodes: &'a [u32],
@@ -13,49 +17,29 @@ pub struct DualSplitTraversal<'a> {
     lattice: Lattice,
     slack: f32,
     /// The cell to go on with: the whole at first, after a pause the one before which it was; none behind a leaf.
-    next: Option<Cell>,
+    next: Option<Segment>,
     /// Far children, the nearest on top.
-    stack: heapless::Vec<Cell, MAX_DEPTH>,
-}
-
-/// The word at which a node begins, with the entry and exit of its implied box.
-#[derive(Clone, Copy, Debug)]
-struct Cell {
-    node: u32,
-    enter: f32,
-    exit: f32,
+    waiting: Waiting<MAX_DEPTH>,
 }
 
 impl<'a> DualSplitTraversal<'a> {
     #[inline]
     pub(super) fn new(tree: &DualSplit<'a>, ray: &PreparedRay) -> Self {
-        // Not filled here, so that it is made where it stays: moving the stack would cost more than a hundred nodes.
-        let mut traversal = Self {
+        let next = Segment::whole(&tree.bounds, ray);
+        Self {
             nodes: tree.nodes,
             references: tree.references,
             lattice: tree.lattice,
-            slack: 0.0,
-            next: None,
-            stack: heapless::Vec::new(),
-        };
-        if let Some((enter, exit)) = tree.bounds.interval(ray) {
-            let enter = greatest(enter, ray.ray().t_min);
-            let exit = least(exit, beyond(ray.ray().t_max));
-            traversal.slack = slack(enter);
-            traversal.next = if enter > exit { None } else { Some(Cell { node: 0, enter, exit }) };
+            slack: next.map_or(0.0, |whole| slack(whole.enter)),
+            next,
+            waiting: Waiting::new(),
         }
-        traversal
     }
 
-    /// The cell put aside last of those that begin before `end`.
+    /// The nearest segment that begins before `end`, up to there: boxes in it may begin behind.
     #[inline(always)]
-    fn pop(&mut self, end: f32) -> Option<Cell> {
-        loop {
-            let cell = self.stack.pop()?;
-            if !(cell.enter > end) {
-                return Some(Cell { exit: least(cell.exit, end), ..cell });
-            }
-        }
+    fn pop(&mut self, end: f32) -> Option<Segment> {
+        self.waiting.pop(end).map(|segment| segment.up_to(end))
     }
 
     #[inline(always)]
@@ -116,10 +100,9 @@ impl<'a> DualSplitTraversal<'a> {
             }
             let entry = (self.lattice.plane(axis, planes >> 16) - view.origin) * view.entry;
             if !(entry > cell.exit) {
-                // Cannot fail: the tree is no deeper than the stack.
-                let _ = self.stack.push(Cell { node: far, enter: greatest(entry, cell.enter), exit: cell.exit });
+                self.waiting.push(Segment { node: far, enter: greatest(entry, cell.enter), exit: cell.exit });
             }
-            cell = Cell { node: near, enter: cell.enter, exit: least(exit, cell.exit) };
+            cell = Segment { node: near, enter: cell.enter, exit: least(exit, cell.exit) };
         }
     }
 }

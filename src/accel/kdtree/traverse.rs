@@ -1,60 +1,36 @@
 use super::{KdTree, MAX_DEPTH, node::Node};
 use crate::{
-    accel::{Leaf, Step, Traversal, leaf::References},
+    accel::{
+        Leaf, Step, Traversal,
+        leaf::References,
+        segment::{Segment, Waiting},
+    },
     geometry::{PreparedRay, beyond, slack},
     math::{greatest, least},
 };
 
-/// The walk through a [`KdTree`]: front to back, a stack of cells that wait.
+/// The walk through a [`KdTree`]: front to back, a stack of segments that wait.
 #[derive(Clone, Debug)]
 pub struct KdTraversal<'a> {
     nodes: &'a [Node],
     references: References<'a>,
     slack: f32,
     /// The cell to go on with: the whole at first, after a pause the one before which it was; none behind a leaf.
-    next: Option<Cell>,
+    next: Option<Segment>,
     /// Far children, the nearest on top.
-    stack: heapless::Vec<Cell, MAX_DEPTH>,
-}
-
-/// A node with the entry and exit of its cell.
-///
-/// (The entry cannot be had from the exit of the cell just left: a ray in a plane is in both cells all the time.)
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Cell {
-    pub(super) node: u32,
-    pub(super) enter: f32,
-    pub(super) exit: f32,
+    waiting: Waiting<MAX_DEPTH>,
 }
 
 impl<'a> KdTraversal<'a> {
     #[inline]
     pub(super) fn new(tree: &KdTree<'a>, ray: &PreparedRay) -> Self {
-        // Not filled here, so that it is made where it stays: moving the stack would cost more than a hundred nodes.
-        let mut traversal = Self {
+        let next = Segment::whole(&tree.bounds, ray);
+        Self {
             nodes: tree.nodes,
             references: tree.references,
-            slack: 0.0,
-            next: None,
-            stack: heapless::Vec::new(),
-        };
-        if let Some((enter, exit)) = tree.bounds.interval(ray) {
-            let enter = greatest(enter, ray.ray().t_min);
-            let exit = least(exit, beyond(ray.ray().t_max));
-            traversal.slack = slack(enter);
-            traversal.next = if enter > exit { None } else { Some(Cell { node: 0, enter, exit }) };
-        }
-        traversal
-    }
-
-    /// The nearest cell that begins before `end`.
-    #[inline(always)]
-    fn pop(&mut self, end: f32) -> Option<Cell> {
-        loop {
-            let cell = self.stack.pop()?;
-            if !(cell.enter > end) {
-                return Some(cell);
-            }
+            slack: next.map_or(0.0, |whole| slack(whole.enter)),
+            next,
+            waiting: Waiting::new(),
         }
     }
 
@@ -62,7 +38,7 @@ impl<'a> KdTraversal<'a> {
     fn advance<const BOUNDED: bool>(&mut self, ray: &PreparedRay, t_max: f32, budget: &mut u32) -> Step<Leaf<'a>> {
         let (nodes, slack, end) = (self.nodes, self.slack, beyond(t_max));
         // The cell at hand is in registers, not in `self`: that is a third of the instructions.
-        let Some(mut cell) = self.next.take().or_else(|| self.pop(end)) else { return Step::Done };
+        let Some(mut cell) = self.next.take().or_else(|| self.waiting.pop(end)) else { return Step::Done };
         loop {
             if BOUNDED {
                 if *budget == 0 {
@@ -75,7 +51,7 @@ impl<'a> KdTraversal<'a> {
             let axis = node.axis_or_leaf();
             if axis == Node::LEAF {
                 match node.number() {
-                    0 => match self.pop(end) {
+                    0 => match self.waiting.pop(end) {
                         Some(next) => cell = next,
                         None => return Step::Done,
                     },
@@ -104,7 +80,7 @@ impl<'a> KdTraversal<'a> {
                 };
                 cell.node = left;
                 if passed {
-                    match self.pop(end) {
+                    match self.waiting.pop(end) {
                         Some(next) => cell = next,
                         None => return Step::Done,
                     }
@@ -114,10 +90,9 @@ impl<'a> KdTraversal<'a> {
             } else if exit < cell.enter {
                 cell.node = far;
             } else {
-                // Cannot fail: the tree is no deeper than the stack.
                 let enter = greatest(entry, cell.enter);
-                let _ = self.stack.push(Cell { node: far, enter, exit: cell.exit });
-                cell = Cell { node: near, enter: cell.enter, exit: least(exit, cell.exit) };
+                self.waiting.push(Segment { node: far, enter, exit: cell.exit });
+                cell = Segment { node: near, enter: cell.enter, exit: least(exit, cell.exit) };
             }
         }
     }

@@ -2,8 +2,9 @@ use super::{CompactKdTree, node::Node};
 use crate::{
     accel::{
         Leaf, Step, Traversal,
-        kdtree::{MAX_DEPTH, traverse::Cell},
+        kdtree::MAX_DEPTH,
         leaf::References,
+        segment::{Segment, Waiting},
     },
     geometry::{Lattice, PreparedRay, beyond, slack},
     math::{greatest, least},
@@ -18,40 +19,22 @@ pub struct CompactKdTraversal<'a> {
     lattice: Lattice,
     slack: f32,
     /// The cell to go on with: the whole at first, after a pause the one before which it was; none behind a leaf.
-    next: Option<Cell>,
+    next: Option<Segment>,
     /// Far children, the nearest on top.
-    stack: heapless::Vec<Cell, MAX_DEPTH>,
+    waiting: Waiting<MAX_DEPTH>,
 }
 
 impl<'a> CompactKdTraversal<'a> {
     #[inline]
     pub(super) fn new(tree: &CompactKdTree<'a>, ray: &PreparedRay) -> Self {
-        // Not filled here, so that it is made where it stays.
-        let mut traversal = Self {
+        let next = Segment::whole(&tree.bounds, ray);
+        Self {
             nodes: tree.nodes,
             references: tree.references,
             lattice: tree.lattice,
-            slack: 0.0,
-            next: None,
-            stack: heapless::Vec::new(),
-        };
-        if let Some((enter, exit)) = tree.bounds.interval(ray) {
-            let enter = greatest(enter, ray.ray().t_min);
-            let exit = least(exit, beyond(ray.ray().t_max));
-            traversal.slack = slack(enter);
-            traversal.next = if enter > exit { None } else { Some(Cell { node: 0, enter, exit }) };
-        }
-        traversal
-    }
-
-    /// The nearest cell that begins before `end`.
-    #[inline(always)]
-    fn pop(&mut self, end: f32) -> Option<Cell> {
-        loop {
-            let cell = self.stack.pop()?;
-            if !(cell.enter > end) {
-                return Some(cell);
-            }
+            slack: next.map_or(0.0, |whole| slack(whole.enter)),
+            next,
+            waiting: Waiting::new(),
         }
     }
 
@@ -76,7 +59,7 @@ impl<'a> CompactKdTraversal<'a> {
     fn advance<const BOUNDED: bool>(&mut self, ray: &PreparedRay, t_max: f32, budget: &mut u32) -> Step<Leaf<'a>> {
         let (nodes, slack, end) = (self.nodes, self.slack, beyond(t_max));
         let lattice = self.lattice;
-        let Some(mut cell) = self.next.take().or_else(|| self.pop(end)) else { return Step::Done };
+        let Some(mut cell) = self.next.take().or_else(|| self.waiting.pop(end)) else { return Step::Done };
         loop {
             if BOUNDED {
                 if *budget == 0 {
@@ -92,7 +75,7 @@ impl<'a> CompactKdTraversal<'a> {
                 if node.count() != 0 {
                     return Step::Leaf(self.leaf(node, cell.node));
                 }
-                match self.pop(end) {
+                match self.waiting.pop(end) {
                     Some(next) => cell = next,
                     None => return Step::Done,
                 }
@@ -117,7 +100,7 @@ impl<'a> CompactKdTraversal<'a> {
                 };
                 cell.node += 1;
                 if passed {
-                    match self.pop(end) {
+                    match self.waiting.pop(end) {
                         Some(next) => cell = next,
                         None => return Step::Done,
                     }
@@ -135,10 +118,9 @@ impl<'a> CompactKdTraversal<'a> {
             } else if exit < cell.enter {
                 cell.node = far;
             } else {
-                // Cannot fail: the tree is no deeper than the stack.
                 let enter = greatest(entry, cell.enter);
-                let _ = self.stack.push(Cell { node: far, enter, exit: cell.exit });
-                cell = Cell { node: near, enter: cell.enter, exit: least(exit, cell.exit) };
+                self.waiting.push(Segment { node: far, enter, exit: cell.exit });
+                cell = Segment { node: near, enter: cell.enter, exit: least(exit, cell.exit) };
             }
         }
     }

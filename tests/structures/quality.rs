@@ -1,7 +1,6 @@
-//! Trees are worth their bytes: equality alone would hold for a single leaf, too.
-#![cfg(feature = "alloc")]
-#![allow(missing_docs)]
+//! kD-trees are worth their bytes: equality alone would hold for a single leaf, too.
 
+use crate::common::meshes::sheet;
 use hitscan::{
     KdTree, Mesh,
     accel::Plan,
@@ -9,18 +8,6 @@ use hitscan::{
     glam::Vec3,
     kdtree::{Options, Split},
 };
-
-/// A rippled sheet of `side` x `side` squares.
-fn sheet(side: u32) -> (Vec<Vec3>, Vec<[u32; 3]>) {
-    let row = side + 1;
-    let height = |x: u32, z: u32| ((x * 7 + z * 5) % 11 + (x / 9 * 13 + z / 7 * 3) % 17) as f32 / 8.0;
-    let vertices = (0..row * row).map(|i| Vec3::new((i % row) as f32, height(i % row, i / row), (i / row) as f32));
-    let triangles = (0..side * side).flat_map(|i| {
-        let corner = i / side * row + i % side;
-        [[corner, corner + 1, corner + row], [corner + 1, corner + row + 1, corner + row]]
-    });
-    (vertices.collect(), triangles.collect())
-}
 
 /// Bytes per triangle, and nodes and tests expected per ray through the bounds.
 fn measured(side: u32, options: &Options) -> (f32, f32, f32) {

@@ -1,0 +1,61 @@
+use crate::{
+    geometry::{Aabb, PreparedRay, beyond},
+    math::{greatest, least},
+};
+
+/// A node, and the part of a ray that lies in its cell.
+///
+/// (The entry cannot be had from the exit of the cell just left: a ray in a plane is in both cells all the time.)
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Segment {
+    pub(crate) node: u32,
+    pub(crate) enter: f32,
+    pub(crate) exit: f32,
+}
+
+impl Segment {
+    /// The part of the ray in the bounds of everything, for the first node.
+    #[inline(always)]
+    pub(crate) fn whole(bounds: &Aabb, ray: &PreparedRay) -> Option<Self> {
+        let (enter, exit) = bounds.interval(ray)?;
+        let enter = greatest(enter, ray.ray().t_min);
+        let exit = least(exit, beyond(ray.ray().t_max));
+        if enter > exit { None } else { Some(Self { node: 0, enter, exit }) }
+    }
+
+    /// The same up to `end`.
+    #[inline(always)]
+    pub(crate) fn up_to(self, end: f32) -> Self {
+        Self { exit: least(self.exit, end), ..self }
+    }
+}
+
+/// Segments that wait, the nearest on top; as many as the tree is deep.
+#[derive(Clone, Debug)]
+pub(crate) struct Waiting<const N: usize>(heapless::Vec<Segment, N>);
+
+impl<const N: usize> Waiting<N> {
+    /// None. Not filled where it is made, so that it is made where it stays: to move it would cost more than a hundred
+    /// nodes.
+    #[inline(always)]
+    pub(crate) const fn new() -> Self {
+        Self(heapless::Vec::new())
+    }
+
+    /// Puts one on top; it cannot fail, because no tree is deeper than its stack.
+    #[inline(always)]
+    pub(crate) fn push(&mut self, segment: Segment) {
+        let _ = self.0.push(segment);
+    }
+
+    /// The nearest that begins before `end`.
+    #[inline(always)]
+    pub(crate) fn pop(&mut self, end: f32) -> Option<Segment> {
+        loop {
+            let segment = self.0.pop()?;
+            if !(segment.enter > end) {
+                return Some(segment);
+            }
+        }
+    }
+}
