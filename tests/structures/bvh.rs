@@ -1,6 +1,6 @@
 //! Bounding volume hierarchies: equal to the list, before and after their primitives move; memory; open; quality.
 
-use crate::common::meshes::{Triangles, crossing, identical, separate, sheet};
+use crate::common::meshes::{crossing, identical, separate, sheet};
 use crate::common::{FAMILIES, Random, adversarial_mesh, adversarial_ray, bits, boxed, noise, point};
 use hitscan::{
     Accelerator, Arena, Bvh, Error, List, Mesh, Primitives, Ray, Scene, Traversal,

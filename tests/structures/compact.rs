@@ -1,6 +1,6 @@
 //! The compact kD-tree: answers as the list, fits its memory and bytes, refuses what it cannot walk.
 
-use crate::common::meshes::{Triangles, crossing, identical};
+use crate::common::meshes::{crossing, identical};
 use crate::common::{FAMILIES, Random, adversarial_mesh, adversarial_ray, bits, boxed, noise};
 use hitscan::{
     Accelerator, Arena, CompactKdTree, KdTree, List, Mesh, Primitives, Ray, Scene, Traversal,

@@ -5,7 +5,6 @@ use hitscan::{
     KdTree, Mesh,
     accel::Plan,
     bake,
-    glam::Vec3,
     kdtree::{Options, Split},
 };
 
