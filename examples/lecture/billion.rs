@@ -43,5 +43,7 @@ fn main() -> stage::Fallible {
     println!("{} triangles, {} of their own, {bytes} bytes of trees", sky.numbers(), mesh.len());
     let lights = [Light::directional(Vec3::new(-1.0, -1.0, -3.0), Vec3::ONE)];
     let camera = Camera::pinhole(Vec3::new(95.0, 65.0, 150.0), Vec3::new(10.0, 0.0, 0.0), Vec3::Y, 0.9);
-    stage::save("billion", &Renderer::new(&scene, camera, 640, 480).with_lights(&lights))
+    stage::save("billion", &Renderer::new(&scene, camera, 640, 480).with_lights(&lights))?;
+    println!("at most {} of memory", stage::peak_memory().unwrap_or("an unknown amount".to_owned()));
+    Ok(())
 }

@@ -8,8 +8,8 @@ const RECENT: usize = 32;
 ///
 /// It spares a fifth of the tests in a grid and a twentieth in a kD-tree, which pays where a test is dear: shapes of your
 /// own, triangles without an FPU. With one, the tests of triangles that it spares cost less than looking them up.
-/// Unlike the mailboxes of Amanatides and Woo, *A fast voxel
-/// traversal algorithm for ray tracing*, 1987, it needs no memory per primitive: the numbers are part of the walk.
+/// Unlike the mailboxes of Amanatides and Woo, *A fast voxel traversal algorithm for ray tracing*, 1987, it needs no memory
+/// per primitive: the numbers are part of the walk.
 ///
 /// ```
 /// use hitscan::{Arena, Grid, Mesh, Ray, Scene, accel::Mailbox, glam::Vec3, grid::Options};

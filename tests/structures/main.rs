@@ -10,6 +10,7 @@ mod compact;
 mod dualsplit;
 mod grid;
 mod kdtree;
+mod memory;
 mod octree;
 mod quality;
 

@@ -7,13 +7,11 @@ use crate::common::{FAMILIES, Random, adversarial_mesh, adversarial_ray, bits, b
 use hitscan::{
     Accelerator, Arena, Hit, List, Mesh, Octree, Primitives, Ray, Scene, Span, Traversal,
     accel::{Hierarchy, Inside, MAX_LEVELS, Reason, Step},
-    arena::Full,
     error::BuildError,
     from_fn,
     geometry::Aabb,
     glam::Vec3,
     octree::{MAX_DEPTH, Options, Split},
-    primitives::Spheres,
     query::Progress,
 };
 
@@ -113,50 +111,6 @@ fn all_options() -> impl Iterator<Item = Options> {
     })
 }
 
-/// Builds in arenas of every size until it goes.
-fn refuses_until_it_goes((vertices, triangles): &Triangles, options: &Options) {
-    let mesh = Mesh::new(vertices, &triangles[..]).unwrap();
-    let expected = baked(&mesh, options);
-    let enough = Octree::words(triangles.len(), options);
-    let mut memory = vec![0; 5 + enough];
-    let (mut promised, mut k) = (0, 0);
-    let first = loop {
-        memory[..5].fill(7);
-        let (tenant, free) = memory[..5 + k].split_at_mut(5);
-        let mut arena = Arena::new(free);
-        match Octree::build(&mesh, &mut arena, options) {
-            Ok(tree) => {
-                assert_eq!(tree.as_words(), expected, "another tree in a smaller arena");
-                assert_eq!(arena.available(), k - expected.len());
-                break k;
-            }
-            Err(BuildError::Full(Full { at_least, available })) => {
-                assert!(available == k && at_least > k, "{at_least} {available} {k}");
-                assert_eq!((arena.available(), &*tenant), (k, &[7; 5][..]));
-                promised = promised.max(at_least);
-            }
-            Err(error) => panic!("{error}"),
-        }
-        k += 1;
-    };
-    assert!(promised <= first && first <= enough, "{promised} {first} {enough}");
-    for k in (first..enough).step_by(1 + (enough - first) / 20) {
-        assert_eq!(build(&mesh, &mut memory[..k], options).unwrap().as_words(), expected, "{k}");
-    }
-}
-
-#[test]
-fn every_arena_is_large_enough_or_refused() {
-    let meshes = [separate(vec![]), random(1, 1.0), random(2, 1.0), random(7, 1.0), random(40, 0.5), identical(20)];
-    for mesh in &meshes {
-        for options in all_options() {
-            refuses_until_it_goes(mesh, &options);
-        }
-        refuses_until_it_goes(mesh, &Options::fast().fit(400));
-    }
-    refuses_until_it_goes(&crossing(30), &Options { intersection_cost: 20.0, ..Options::fast() });
-}
-
 #[test]
 fn the_words_asked_for_always_suffice() {
     let meshes = [crossing(400), identical(1000), hair(300), random(500, 0.05), random(501, 3.0), shrinking(300)];
@@ -194,13 +148,6 @@ fn the_words_asked_for_always_suffice() {
 }
 
 #[test]
-fn absurd_numbers_need_absurd_memory() {
-    for options in all_options().chain([Options::fast().fit(usize::MAX)]) {
-        assert!(Octree::words(usize::MAX, &options) > usize::MAX / 2);
-    }
-}
-
-#[test]
 fn trees_fit_into_their_bytes() {
     let meshes = [separate(vec![]), random(1, 1.0), random(3, 1.0), random(40, 0.3), identical(150), crossing(60)];
     for (vertices, triangles) in &meshes {
@@ -228,50 +175,6 @@ fn trees_fit_into_their_bytes() {
                 Err(error) => panic!("{error}: {options:?}"),
             }
         }
-    }
-}
-
-#[test]
-fn primitives_without_valid_bounds_are_named_and_leave_the_arena_alone() {
-    let bad = [Aabb::EMPTY, Aabb::new(Vec3::NAN, Vec3::ONE), Aabb::new(Vec3::ZERO, Vec3::splat(1.0e38))];
-    for bad in bad {
-        let good = Aabb::new(Vec3::ZERO, Vec3::ONE);
-        let shapes = from_fn(9, |i| if i == 5 || i == 7 { bad } else { good }, |_, _| Some(1.0));
-        let mut memory = vec![7; Octree::words(9, &Options::small())];
-        let mut arena = Arena::new(&mut memory);
-        let before = arena.available();
-        let refused = Octree::build(&shapes, &mut arena, &Options::small()).map(|tree| tree.depth());
-        assert_eq!(refused, Err(BuildError::Bounds { primitive: 5 }));
-        assert_eq!(arena.available(), before);
-    }
-}
-
-#[test]
-fn numbers_of_references_grow_to_32_bits() {
-    // 65,536 is the last count with narrow references.
-    for count in [65_535, 65_536, 65_537] {
-        let boxes = |i: u32| Aabb::new(Vec3::splat((i / 3) as f32), Vec3::splat((i / 3 + 1) as f32));
-        let shapes = from_fn(count, boxes, |i, _| Some(i as f32));
-        let words = baked(&shapes, &Options::small());
-        let scene = Scene::new(Octree::open(&words).unwrap(), &shapes).unwrap();
-        let list = Scene::new(List::new(&shapes).unwrap(), &shapes).unwrap();
-        let along = Ray::new(Vec3::splat(((count - 20) / 3) as f32 + 0.5), Vec3::ONE);
-        assert_eq!(scene.closest_hit(&along), list.closest_hit(&along));
-        assert_eq!(list.hits(&along).last().map(|hit| hit.primitive), Some(count - 1));
-        assert_eq!(scene.hits(&along).last(), list.hits(&along).last());
-    }
-}
-
-#[test]
-fn nothing_can_be_built_and_hit() {
-    let nothing = (Mesh::new(&[], &[[0_u16; 3]; 0]).unwrap(), Spheres::new(&[]).unwrap());
-    let words = baked(&nothing, &Options::fast());
-    let scene = Scene::new(Octree::open(&words).unwrap(), &nothing).unwrap();
-    assert!(scene.accelerator().root().is_none());
-    let mut random = Random::new(5);
-    for _ in 0..1000 {
-        let ray = adversarial_ray(&mut random, 2, &[Vec3::ZERO, Vec3::X, Vec3::Y]);
-        assert!(scene.closest_hit(&ray).is_none() && !scene.any_hit(&ray) && scene.hits(&ray).count() == 0);
     }
 }
 

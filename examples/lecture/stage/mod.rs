@@ -71,3 +71,9 @@ pub fn save_pixels(name: &str, width: u32, pixels: &[[u8; 3]]) -> Fallible {
     println!("{}", path.display());
     Ok(())
 }
+
+/// The most memory that the program has taken so far, where the system tells (Linux).
+pub fn peak_memory() -> Option<String> {
+    let status = fs::read_to_string("/proc/self/status").ok()?;
+    status.lines().find_map(|line| line.strip_prefix("VmHWM:")).map(|most| most.trim().to_owned())
+}

@@ -27,7 +27,12 @@ pub(super) use super::cells::size;
 /// See [`Grid::words`](super::Grid::words).
 pub(super) const fn words(primitives: usize, options: &Options) -> usize {
     let cells = options.cells(primitives) as usize;
-    (HEADER_WORDS + 1 + cells + block_words(options.form, cells)).saturating_add(options.bytes(primitives).div_ceil(4))
+    let body = match options.bytes(primitives) {
+        // As many as can be told: a quarter of that could be had.
+        usize::MAX => usize::MAX,
+        bytes => bytes.div_ceil(4),
+    };
+    (HEADER_WORDS + 1 + cells + block_words(options.form, cells)).saturating_add(body)
 }
 
 /// Writes a grid over `primitives` to the front of `words`; how many it took.
