@@ -12,9 +12,11 @@ use std::{env, error::Error, fmt::Write as _, fs, path::Path};
 use answer::Answer;
 use hitscan::{
     KdTree, Mesh, Scene,
-    accel::Plan,
+    accel::{List, Plan, Structure},
     bake::{self, Baker},
+    bvh, dualsplit, grid, kdtree,
     kdtree::Options,
+    octree,
 };
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -39,7 +41,63 @@ fn main() -> Result<(), Box<dyn Error>> {
     code += &asset(out, "REBUILT", "The knot that is also built on the device.", (along, around), &Options::small())?;
     let triangles = usize::from(along) * usize::from(around) * 2;
     writeln!(code, "/// Triangles of [`REBUILT`].\npub const REBUILT_TRIANGLES: usize = {triangles};")?;
+    code += &contest(out)?;
     Ok(fs::write(out.join("baked.rs"), code)?)
+}
+
+/// What `bench` compares.
+fn plans() -> Vec<(&'static str, Plan)> {
+    vec![
+        ("grid small", Plan::Grid(grid::Options::small())),
+        ("grid balanced", Plan::Grid(grid::Options::balanced())),
+        ("grid fast", Plan::Grid(grid::Options::fast())),
+        ("octree balanced", Plan::Octree(octree::Options::balanced())),
+        ("kd small", Plan::KdTree(kdtree::Options::small())),
+        ("kd balanced", Plan::KdTree(kdtree::Options::balanced())),
+        ("kd fast", Plan::KdTree(kdtree::Options::fast())),
+        ("compact small", Plan::CompactKdTree(kdtree::Options::small())),
+        ("compact balanced", Plan::CompactKdTree(kdtree::Options::balanced())),
+        ("bvh balanced", Plan::Bvh(bvh::Options::balanced())),
+        ("dual small", Plan::DualSplit(dualsplit::Options::small())),
+        ("dual balanced", Plan::DualSplit(dualsplit::Options::balanced())),
+        ("dual fast", Plan::DualSplit(dualsplit::Options::fast())),
+    ]
+}
+
+/// The knots under every plan, in the order of the leaves where there are no references.
+fn contest(out: &Path) -> Result<String, Box<dyn Error>> {
+    let mut code = "/// What `bench` compares.\npub static CONTEST: &[Contestant] = &[\n".to_string();
+    for (size, (along, around)) in [("1k", (100, 5)), ("5k", (250, 10))] {
+        let (vertices, triangles) = knot::mesh(along, around);
+        let mesh = Mesh::new(&vertices, triangles.as_slice())?;
+        for (name, plan) in plans() {
+            let kind = plan.kind().ok_or("every plan has a kind")?;
+            let mut words = bake::build(&mesh, &plan)?;
+            let mut corners = bake::reorder(&mesh, &(0..mesh.indices().len() as u32).collect::<Vec<_>>());
+            if let Some((ordered, order)) = bake::ordered(&Structure::open(kind, &words)?) {
+                corners = bake::reorder(&mesh, &order);
+                words = ordered;
+            }
+            let mesh = Mesh::new(&vertices, corners.as_slice())?;
+            let structure = Structure::open(kind, &words)?;
+            let asset = Baker::new().mesh(&mesh).structure(structure).finish();
+            let file = out.join(format!("{size} {name}.hits"));
+            fs::write(&file, asset.into_iter().flat_map(u32::to_le_bytes).collect::<Vec<_>>())?;
+            let scene = Scene::new(List::new(&mesh)?, &mesh)?;
+            let mut answer = Answer::NONE;
+            for ray in (0..camera::HEIGHT).flat_map(camera::row) {
+                answer.add(scene.closest_hit(&ray));
+            }
+            let triangles = corners.len();
+            let bytes = words.len() * 4;
+            writeln!(
+                code,
+                "    Contestant {{ name: {name:?}, triangles: {triangles}, bytes: {bytes}, baked: Baked {{ bytes: \
+                 hitscan::include_asset!({file:?}), answer: {answer:?} }} }},"
+            )?;
+        }
+    }
+    Ok(code + "];\n")
 }
 
 /// Writes a knot and its tree to a file; the `static` that includes it beside the answer to the camera's rays.

@@ -2,6 +2,7 @@
 
 use hitscan::{
     KdTree, Mesh, Scene,
+    accel::Accelerator,
     asset::{Asset, Stored},
 };
 
@@ -28,8 +29,26 @@ impl Baked {
 
     /// The tree with its mesh.
     pub fn scene(&self) -> Scene<KdTree<'static>, Mesh<'static>> {
-        self.asset().scene().expect("build.rs bakes meshes with their trees")
+        self.scene_under()
     }
+
+    /// The structure with its mesh.
+    pub fn scene_under<A: Accelerator + Stored<'static>>(&self) -> Scene<A, Mesh<'static>> {
+        self.asset().scene().expect("build.rs bakes meshes with their structures")
+    }
+}
+
+/// A structure over a knot.
+#[derive(Clone, Copy, Debug)]
+pub struct Contestant {
+    /// The structure and its options.
+    pub name: &'static str,
+    /// How many triangles the knot has.
+    pub triangles: usize,
+    /// What the structure takes.
+    pub bytes: usize,
+    /// The asset.
+    pub baked: Baked,
 }
 
 include!(concat!(env!("OUT_DIR"), "/baked.rs"));
