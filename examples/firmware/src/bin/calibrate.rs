@@ -1,0 +1,99 @@
+//! What a ray costs by structure: instructions for its set-up, per node visited and per primitive tested, fitted by least
+//! squares to every ray at every knot. Prints the rows of `hitscan`'s table of chips.
+
+#![no_std]
+#![no_main]
+
+use core::{cell::Cell, hint::black_box};
+
+use firmware::{
+    Counter,
+    baked::{CONTEST, Contestant},
+    camera, entry, finish, stack_of,
+};
+use hitscan::{
+    Bvh, CompactKdTree, DualSplit, Grid, KdTree, Mesh, Octree, Ray, Scene,
+    accel::{self, Accelerator},
+    asset::Stored,
+    primitives,
+};
+use semihosting::{print, println};
+
+/// Sums over rays, enough for the normal equations of `instructions = set-up + node * nodes + test * tests`.
+#[derive(Default)]
+struct Fit {
+    /// Products of (1, nodes, tests) with (1, nodes, tests, instructions).
+    sums: [[f64; 4]; 3],
+    stack: usize,
+}
+
+impl Fit {
+    fn add(&mut self, nodes: u64, tests: u64, instructions: u64) {
+        let row = [1.0, nodes as f64, tests as f64, instructions as f64];
+        for (sums, by) in self.sums.iter_mut().zip(row) {
+            sums.iter_mut().zip(row).for_each(|(sum, value)| *sum += by * value);
+        }
+    }
+
+    /// Set-up, node and test, by elimination.
+    fn solve(&self) -> [f64; 3] {
+        let mut rows = self.sums;
+        for pivot in 0..3 {
+            let by = rows[pivot];
+            for row in (0..3).filter(|&row| row != pivot) {
+                let factor = rows[row][pivot] / by[pivot];
+                rows[row].iter_mut().zip(by).for_each(|(value, by)| *value -= factor * by);
+            }
+        }
+        [0, 1, 2].map(|k| rows[k][3] / rows[k][k])
+    }
+}
+
+/// Adds the rays at a contestant.
+#[inline(never)]
+fn measure<A: Accelerator + Stored<'static>>(counter: &Counter, contestant: &Contestant, fit: &mut Fit) {
+    let scene: Scene<A, Mesh> = contestant.baked.scene_under();
+    let (nodes, tests) = (Cell::new(0), Cell::new(0));
+    let counted = Scene::new(
+        accel::Counted::new(contestant.baked.read::<A>(), &nodes),
+        primitives::Counted::new(contestant.baked.read::<Mesh>(), &tests),
+    );
+    let counted = counted.expect("the same scene");
+    // Both queries have two callers, as in any program with shadows.
+    let query = |ray: &Ray| (scene.closest_hit(black_box(ray)), scene.any_hit(black_box(ray)));
+    for ray in (0..camera::HEIGHT).step_by(4).flat_map(camera::row) {
+        let (before, tested) = (nodes.get(), tests.get());
+        black_box(counted.closest_hit(&ray));
+        let instructions = counter.instructions(|| _ = black_box(scene.closest_hit(black_box(&ray))));
+        fit.add(nodes.get() - before, tests.get() - tested, instructions);
+    }
+    let row = camera::row(camera::HEIGHT / 2).step_by(8);
+    let most = row.map(|ray| stack_of(&mut || _ = black_box(query(&ray)))).max();
+    fit.stack = fit.stack.max(most.unwrap_or(0));
+}
+
+#[entry]
+fn main() -> ! {
+    let counter = Counter::new();
+    let measures: [(&str, fn(&Counter, &Contestant, &mut Fit)); 6] = [
+        ("grid", measure::<Grid>),
+        ("octree", measure::<Octree>),
+        ("kd", measure::<KdTree>),
+        ("compact", measure::<CompactKdTree>),
+        ("bvh", measure::<Bvh>),
+        ("dual", measure::<DualSplit>),
+    ];
+    let mut plausible = true;
+    for (name, measure) in measures {
+        let mut fit = Fit::default();
+        let family = CONTEST.iter().filter(|contestant| contestant.name.split(' ').next() == Some(name));
+        family.for_each(|contestant| measure(&counter, contestant, &mut fit));
+        print!("{name}");
+        for cost in fit.solve() {
+            plausible &= cost > 1.0;
+            print!(",{cost:.0}");
+        }
+        println!(",{}", fit.stack);
+    }
+    finish(plausible)
+}
