@@ -52,15 +52,15 @@ fn plans() -> Vec<(&'static str, Plan)> {
         ("grid balanced", Plan::Grid(grid::Options::balanced())),
         ("grid fast", Plan::Grid(grid::Options::fast())),
         ("octree balanced", Plan::Octree(octree::Options::balanced())),
-        ("kd small", Plan::KdTree(kdtree::Options::small())),
-        ("kd balanced", Plan::KdTree(kdtree::Options::balanced())),
-        ("kd fast", Plan::KdTree(kdtree::Options::fast())),
-        ("compact small", Plan::CompactKdTree(kdtree::Options::small())),
-        ("compact balanced", Plan::CompactKdTree(kdtree::Options::balanced())),
+        ("kdtree small", Plan::KdTree(kdtree::Options::small())),
+        ("kdtree balanced", Plan::KdTree(kdtree::Options::balanced())),
+        ("kdtree fast", Plan::KdTree(kdtree::Options::fast())),
+        ("kdtree-compact small", Plan::CompactKdTree(kdtree::Options::small())),
+        ("kdtree-compact balanced", Plan::CompactKdTree(kdtree::Options::balanced())),
         ("bvh balanced", Plan::Bvh(bvh::Options::balanced())),
-        ("dual small", Plan::DualSplit(dualsplit::Options::small())),
-        ("dual balanced", Plan::DualSplit(dualsplit::Options::balanced())),
-        ("dual fast", Plan::DualSplit(dualsplit::Options::fast())),
+        ("dual-split small", Plan::DualSplit(dualsplit::Options::small())),
+        ("dual-split balanced", Plan::DualSplit(dualsplit::Options::balanced())),
+        ("dual-split fast", Plan::DualSplit(dualsplit::Options::fast())),
     ]
 }
 

@@ -37,7 +37,7 @@ fn measure<A: Accelerator + Stored<'static>>(counter: &Counter, contestant: &Con
     let rays = u64::from(answer.rays);
     let bytes = contestant.bytes as f32 / contestant.triangles as f32;
     println!(
-        "{:5} {:<17} {bytes:6.2} B/tri {:6} closest {:6} any {stack:5} B of stack",
+        "{:5} {:<24} {bytes:6.2} B/tri {:6} closest {:6} any {stack:5} B of stack",
         contestant.triangles,
         contestant.name,
         closest / rays,
@@ -54,8 +54,8 @@ fn main() -> ! {
         let measure = match contestant.name.split(' ').next() {
             Some("grid") => measure::<Grid>,
             Some("octree") => measure::<Octree>,
-            Some("kd") => measure::<KdTree>,
-            Some("compact") => measure::<CompactKdTree>,
+            Some("kdtree") => measure::<KdTree>,
+            Some("kdtree-compact") => measure::<CompactKdTree>,
             Some("bvh") => measure::<Bvh>,
             _ => measure::<DualSplit>,
         };

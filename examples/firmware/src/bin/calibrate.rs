@@ -78,10 +78,10 @@ fn main() -> ! {
     let measures: [(&str, fn(&Counter, &Contestant, &mut Fit)); 6] = [
         ("grid", measure::<Grid>),
         ("octree", measure::<Octree>),
-        ("kd", measure::<KdTree>),
-        ("compact", measure::<CompactKdTree>),
+        ("kdtree", measure::<KdTree>),
+        ("kdtree-compact", measure::<CompactKdTree>),
         ("bvh", measure::<Bvh>),
-        ("dual", measure::<DualSplit>),
+        ("dual-split", measure::<DualSplit>),
     ];
     let mut plausible = true;
     for (name, measure) in measures {

@@ -1,0 +1,44 @@
+//! As little as a program can be that asks an asset in flash for closest and any hits: what the library takes of flash is
+//! its size less that of the same program without queries (no feature). The features name the structure.
+
+#![no_std]
+#![no_main]
+
+use core::hint::black_box;
+
+use firmware::entry;
+#[cfg(feature = "structure")]
+use firmware::{baked::KNOT, camera};
+use semihosting::process;
+
+#[cfg(feature = "bvh")]
+use hitscan::Bvh as Structure;
+#[cfg(feature = "kdtree-compact")]
+use hitscan::CompactKdTree as Structure;
+#[cfg(feature = "dual-split")]
+use hitscan::DualSplit as Structure;
+#[cfg(feature = "grid")]
+use hitscan::Grid as Structure;
+#[cfg(feature = "kdtree")]
+use hitscan::KdTree as Structure;
+#[cfg(feature = "octree")]
+use hitscan::Octree as Structure;
+
+/// Whether a ray's two queries agree.
+#[cfg(feature = "structure")]
+fn agree() -> Result<bool, hitscan::Error> {
+    let scene = hitscan::asset::Asset::open(black_box(KNOT.bytes))?.scene::<Structure, hitscan::Mesh>()?;
+    let mut rays = camera::row(camera::HEIGHT / 2);
+    Ok(rays.all(|ray| scene.closest_hit(&ray).is_some() == scene.any_hit(&ray)))
+}
+
+/// Nothing to ask.
+#[cfg(not(feature = "structure"))]
+fn agree() -> Result<bool, core::convert::Infallible> {
+    Ok(black_box(true))
+}
+
+#[entry]
+fn main() -> ! {
+    process::exit(i32::from(!agree().unwrap_or(false)))
+}
