@@ -3,6 +3,7 @@
 //! Every failure is one line on standard error, `hitscan: WHAT: HOW TO MEND IT`, and exit code 2. Outputs appear whole or
 //! not at all.
 
+mod chip;
 mod commands;
 mod compare;
 mod difference;

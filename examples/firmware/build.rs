@@ -27,7 +27,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let out = Path::new(&out);
     let target = env::var("TARGET")?;
     let board = match target.split('-').next() {
-        Some("thumbv6m") => "microbit",
+        Some("thumbv6m") if env::var_os("CARGO_FEATURE_ROOMY").is_none() => "microbit",
         Some("thumbv8m.main") => "an505",
         Some("riscv32imc" | "riscv32imac" | "riscv32imafc") => "virt",
         _ => "mps2",

@@ -11,11 +11,12 @@ use hitscan::{
     bake::{self, Baker},
 };
 
-use super::print;
+use super::{predict, print};
 use crate::{
+    chip::{self, Chip},
     failure::{self, Failure},
     output::{self, write_atomically},
-    scene::{Built, Choice, Palette, Preset, Shape, Source, broken},
+    scene::{Built, Choice, Named, Palette, Preset, Shape, Source, broken},
     units::{count, parse_bytes},
 };
 
@@ -24,18 +25,22 @@ use crate::{
 /// An asset holds triangles, a structure over them and materials in one block of bytes, and rays are cast at it where it
 /// lies. Prints what the bytes are for and the worst case of a ray. The same bytes on every host.
 #[derive(Debug, clap::Args)]
-#[command(after_help = "Example: hitscan bake bunny.obj.gz -o bunny.hits --preset small --fit 3M")]
+#[command(after_help = "Examples: hitscan bake bunny.obj.gz -o bunny.hits --preset small --fit 3M\n          \
+                        hitscan bake robot.stl -o robot.hits --target m4 --fit 64K")]
 pub struct Bake {
     /// Mesh (.obj, .stl, .ply, .gltf, .glb, each also with .gz)
     model: PathBuf,
     /// Asset to write; - for standard output
     #[arg(short, long, value_name = "FILE", default_value = "scene.hits")]
     output: PathBuf,
-    #[arg(short, long, value_name = "NAME", default_value = "kdtree", help = Choice::help("triangles"))]
-    structure: Choice,
-    /// What the structure is tuned for
-    #[arg(short, long, value_name = "PRESET", default_value = "balanced")]
-    preset: Preset,
+    #[arg(short, long, value_name = "NAME", help = Choice::help("triangles") + " [default: kdtree, or auto for a --target]")]
+    structure: Option<Choice>,
+    /// What the structure is tuned for [default: balanced, or what is fastest on a --target]
+    #[arg(short, long, value_name = "PRESET", conflicts_with = "target")]
+    preset: Option<Preset>,
+    /// Take the structure and preset with the fewest instructions per ray on this chip, by counts and a measured table
+    #[arg(short, long, value_name = "CHIP")]
+    target: Option<Chip>,
     /// Keep the triangles' numbers where a structure (bvh, dual-split) puts them into another order, for 4 to 8 bytes each
     #[arg(long)]
     keep_numbers: bool,
@@ -56,7 +61,14 @@ impl Bake {
         let unmoved: Vec<u32> = (0..mesh.indices().len() as u32).collect();
         let bare = bake(&mesh, &geometry.palette, None, self.keep_numbers.then_some(&unmoved)).len() * 4;
         let most = self.fit.map(|most| room(most, bare)).transpose()?;
-        let (built, order) = Built::within(&mesh, self.structure, self.preset, most)?.ordered(&mesh)?;
+        let built = match self.target {
+            Some(chip) => chip::choose(&mesh, chip, self.structure.unwrap_or_default(), most)?,
+            None => {
+                let structure = self.structure.unwrap_or(Choice::Named(Named::assumed()));
+                Built::within(&mesh, structure, self.preset.unwrap_or_default(), most)?
+            }
+        };
+        let (built, order) = built.ordered(&mesh)?;
         let corners = bake::reorder(&mesh, &order);
         let mesh = Mesh::new(mesh.vertices(), &corners[..]).map_err(broken)?;
         let structure = built.structure(&mesh)?;
@@ -68,7 +80,10 @@ impl Bake {
             return Err(Failure::new(what, "allow more bytes, or choose another structure, such as kdtree"));
         }
         write_atomically(&self.output, |file| words.iter().try_for_each(|word| file.write_all(&word.to_le_bytes())))?;
-        let table = table(&words, &built, &structure, geometry.len(), &self.output)?;
+        let mut table = table(&words, &built, &structure, geometry.len(), &self.output)?;
+        if let Some(chip) = self.target {
+            predict(&mut table, chip, &built, &mesh, words.len() * 4)?;
+        }
         if self.output == Path::new("-") {
             failure::note(&table);
         } else {

@@ -1,9 +1,10 @@
 use std::{path::PathBuf, process::ExitCode};
 
-use hitscan::{Primitives, asset::Asset, geometry::Aabb, primitives::Indices};
+use hitscan::{Mesh, Primitives, asset::Asset, geometry::Aabb, primitives::Indices};
 
-use super::{line, print};
+use super::{line, predict, print};
 use crate::{
+    chip::Chip,
     failure::Failure,
     progress::Progress,
     scene::{Anatomy, Built, Instancing, Shape, Source, StructureArgs, View},
@@ -16,13 +17,16 @@ use crate::{
 /// structure, which is built first for a mesh, triangles and bytes with and without instancing (glTF can place a mesh
 /// several times), and the bytes of an asset's sections.
 #[derive(Debug, clap::Args)]
-#[command(after_help = "Example: hitscan info bunny.obj.gz")]
+#[command(after_help = "Examples: hitscan info bunny.obj.gz\n          hitscan info robot.hits --target m0")]
 pub struct Info {
     /// Mesh (.obj, .stl, .ply, .gltf, .glb, each also with .gz) or baked asset
     #[arg(value_name = "MODEL|ASSET")]
     model: PathBuf,
     #[command(flatten)]
     structure: StructureArgs,
+    /// Predict flash, stack and instructions per ray on this chip, by counts and a measured table
+    #[arg(short, long, value_name = "CHIP")]
+    target: Option<Chip>,
 }
 
 impl Info {
@@ -38,8 +42,14 @@ impl Info {
         describe_mesh(&mut text, &view, &anatomy);
         describe_structure(&mut text, &built, &view)?;
         self.describe_instancing(&mut text, &source, &built, &view)?;
+        let mut asset = None;
         if let Source::Asset(words) = &source {
             describe_sections(&mut text, words);
+            asset = Some(words.len() * 4);
+        }
+        if let Some(chip) = self.target {
+            let asset = asset.unwrap_or_else(|| bytes_of(&view.mesh) + built.bytes());
+            predict(&mut text, chip, &built, &view.mesh, asset)?;
         }
         print(&text)?;
         Ok(ExitCode::SUCCESS)
@@ -62,8 +72,7 @@ impl Info {
             }
             Source::Asset(_) => None,
         };
-        let corner = if matches!(view.mesh.indices(), Indices::Narrow(_)) { 2 } else { 4 };
-        let flat = size_of_val(view.mesh.vertices()) + placed as usize * 3 * corner + built.bytes();
+        let flat = bytes_of(&view.mesh) + built.bytes();
         let (unique, bytes) = match instancing {
             None => (format!("{}, each placed once", count(placed)), flat),
             Some(Instancing { parts, placements, unique, bytes }) => {
@@ -76,6 +85,12 @@ impl Info {
         line(text, "bytes as instances", count(bytes));
         Ok(())
     }
+}
+
+/// What vertices and triangles take.
+fn bytes_of(mesh: &Mesh<'_>) -> usize {
+    let corner = if matches!(mesh.indices(), Indices::Narrow(_)) { 2 } else { 4 };
+    size_of_val(mesh.vertices()) + mesh.indices().len() * 3 * corner
 }
 
 fn describe_mesh(text: &mut String, view: &View<'_>, anatomy: &Anatomy) {

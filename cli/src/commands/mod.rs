@@ -15,7 +15,15 @@ use std::{
     thread,
 };
 
-use crate::{failure::Failure, output::write_atomically};
+use hitscan::Mesh;
+
+use crate::{
+    chip::{Chip, Prediction},
+    failure::Failure,
+    output::write_atomically,
+    scene::Built,
+    trial::Rays,
+};
 
 /// What to do.
 #[derive(Debug, clap::Subcommand)]
@@ -53,6 +61,17 @@ fn print(text: &str) -> Result<(), Failure> {
 /// Adds a line `  what  value` to a report. Writing to a string cannot fail.
 fn line(text: &mut String, what: &str, value: impl fmt::Display) {
     let _ = writeln!(text, "  {what:<18} {value}");
+}
+
+/// Adds what a scene, an asset of so many bytes, will cost on a chip.
+fn predict(text: &mut String, chip: Chip, built: &Built, mesh: &Mesh<'_>, asset: usize) -> Result<(), Failure> {
+    let rays = Rays::around(&*built.scene(mesh)?);
+    let _ = writeln!(text, "on a {}", chip.title());
+    match Prediction::new(chip, built, mesh, &rays)? {
+        Some(prediction) => prediction.rows(asset).into_iter().for_each(|(what, value)| line(text, what, value)),
+        None => line(text, "unknown", "this structure was not measured there"),
+    }
+    Ok(())
 }
 
 /// The option that sets how many threads work.

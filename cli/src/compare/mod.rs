@@ -17,7 +17,7 @@ use crate::{
     failure::Failure,
     scene::{Built, Named, Preset},
     stage::{CameraArg, Up, Viewpoint},
-    trial::{RAYS, Rays, outside},
+    trial::{Rays, outside},
 };
 
 pub use contest::{Contest, Entry, Outcome};
@@ -37,5 +37,5 @@ pub fn rays_at(mesh: &Mesh<'_>, camera: Option<CameraArg>, count: usize) -> Resu
     let all = outside(&bounds);
     let asked =
         camera.map(|camera| Viewpoint::new(Some(camera), &bounds, Up::guess(&bounds), 1.0, [].into_iter()).camera);
-    Ok((Rays::new(&*scene, &asked.unwrap_or(all), count), Rays::new(&*scene, &all, RAYS)))
+    Ok((Rays::new(&*scene, &asked.unwrap_or(all), count), Rays::around(&*scene)))
 }

@@ -11,6 +11,9 @@ pub enum Preset {
 }
 
 impl Preset {
+    /// All of them, the fewest bytes first.
+    pub const ALL: [Self; 3] = [Self::Small, Self::Balanced, Self::Fast];
+
     /// Its name on the command line.
     pub const fn name(self) -> &'static str {
         match self {

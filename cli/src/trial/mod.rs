@@ -15,9 +15,6 @@ use crate::{
     scene::{Built, Named, Preset},
 };
 
-/// Primary rays of a trial; work is counted on the bounce rays from where they hit.
-pub const RAYS: usize = 4096;
-
 /// Builds what `compare` recommends for these primitives, if it is in at most so many bytes.
 pub fn choose<P: Primitives + Sync>(primitives: &P, preset: Preset, most: Option<usize>) -> Result<Built, Failure> {
     if let Some(Recommendation { named, why }) = by_number(primitives.len()) {
@@ -37,8 +34,7 @@ pub fn choose<P: Primitives + Sync>(primitives: &P, preset: Preset, most: Option
     }
     let mut rays = Rays::default();
     if let Some((_, first)) = tried.first() {
-        let scene = first.scene(primitives)?;
-        rays = Rays::new(&*scene, &outside(&scene.bounds()), RAYS);
+        rays = Rays::around(&*first.scene(primitives)?);
     }
     let mut candidates = Vec::new();
     for (named, built) in &tried {

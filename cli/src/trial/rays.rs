@@ -5,6 +5,9 @@ use hitscan::{
     render::{Camera, Caster},
 };
 
+/// Primary rays of a trial.
+const RAYS: usize = 4096;
+
 /// Rays of three kinds at one scene: the same bits on every machine, so that what is counted on them is, too.
 #[derive(Clone, Debug, Default)]
 pub struct Rays {
@@ -17,6 +20,11 @@ pub struct Rays {
 }
 
 impl Rays {
+    /// Those of a trial: from a camera that sees the whole scene.
+    pub fn around(scene: &dyn Caster) -> Self {
+        Self::new(scene, &outside(&scene.bounds()), RAYS)
+    }
+
     /// About `count` primary rays, and as many of the others as of these hit.
     pub fn new(scene: &dyn Caster, camera: &Camera, count: usize) -> Self {
         let side = (count as f32).sqrt().ceil().max(1.0) as u32;

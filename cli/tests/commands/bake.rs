@@ -143,3 +143,28 @@ fn triangles_that_stand_in_another_order_keep_their_materials_and_if_asked_their
         }
     }
 }
+
+#[test]
+fn a_chip_gets_what_is_fastest_within_its_bytes() {
+    let folder = Folder::new();
+    folder.write("waves.obj", waves(20));
+    let instructions = |text: &str| -> u32 {
+        let line = text.lines().find(|line| line.starts_with("chosen because: about ")).unwrap();
+        line.split(' ').nth(3).unwrap().replace(',', "").parse().unwrap()
+    };
+    let free = folder.succeed("bake waves.obj -o free.hits --target m4");
+    let most = folder.read("free.hits").len() * 3 / 4;
+    let tight = folder.succeed(&format!("bake waves.obj -o tight.hits --target m4 --fit {most}"));
+    assert!(folder.read("tight.hits").len() <= most);
+    assert!(instructions(&free) < instructions(&tight), "{free}{tight}");
+    assert!(free.contains("on a Cortex-M4F") && free.contains("bytes of stack"), "{free}");
+    for preset in ["small", "balanced", "fast"] {
+        folder.succeed(&format!("bake waves.obj -o this.hits -s kdtree -p {preset}"));
+        let this = folder.succeed("info this.hits --target m0");
+        assert!(this.contains("on a Cortex-M0") && this.contains("worst case"), "{this}");
+    }
+    let error = folder.refuse(&format!("bake waves.obj -o none.hits --target m0 --fit {}", most / 2));
+    assert!(error.contains("allow more bytes"), "{error}");
+    let error = folder.refuse("bake waves.obj --target z80");
+    assert!(error.contains("z80") && error.contains("rv32imc"), "{error}");
+}

@@ -1,0 +1,50 @@
+use hitscan::{Primitives, bake};
+
+use super::{Chip, Prediction};
+use crate::{
+    failure::Failure,
+    scene::{Built, Choice, Named, Preset},
+    trial::Rays,
+};
+
+/// The structure, of those asked for and in every preset, that takes a ray the fewest instructions on a chip and at most so
+/// many bytes when it is baked: a function of counts and of the table of costs, the same every time and everywhere.
+pub fn choose<P: Primitives + Sync>(
+    primitives: &P,
+    chip: Chip,
+    choice: Choice,
+    most: Option<usize>,
+) -> Result<Built, Failure> {
+    let asked: Vec<&Named> = match choice {
+        Choice::Auto => Named::ALL.iter().filter(|named| named.is_candidate).collect(),
+        Choice::Named(named) => vec![named],
+    };
+    let (mut tried, mut refused) = (Vec::new(), None);
+    for (named, preset) in asked.into_iter().flat_map(|named| Preset::ALL.map(|preset| (named, preset))) {
+        match Built::named(primitives, named, preset, most) {
+            Ok(built) => tried.push(built),
+            Err(failure) => refused = Some(failure),
+        }
+    }
+    let Some(first) = tried.first() else {
+        return Err(refused.unwrap_or_else(|| Failure::new("there is no structure", "choose one with --structure")));
+    };
+    let rays = Rays::around(&*first.scene(primitives)?);
+    let mut best: Option<(f64, Built)> = None;
+    let mut least = usize::MAX;
+    for built in tried {
+        let bytes = bake::ordered(&built.structure(primitives)?).map_or(built.bytes(), |(words, _)| words.len() * 4);
+        least = least.min(bytes);
+        if most.is_some_and(|most| bytes > most) {
+            continue;
+        }
+        let Some(prediction) = Prediction::new(chip, &built, primitives, &rays)? else { continue };
+        if best.as_ref().is_none_or(|(typical, _)| prediction.typical < *typical) {
+            best = Some((prediction.typical, built.because(prediction.to_string())));
+        }
+    }
+    best.map(|(_, built)| built).ok_or_else(|| {
+        let what = format!("no structure is within {} bytes; the smallest takes {least}", most.unwrap_or_default());
+        Failure::new(what, "allow more bytes, or simplify the mesh")
+    })
+}

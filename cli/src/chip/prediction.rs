@@ -1,0 +1,68 @@
+use std::fmt;
+
+use hitscan::Primitives;
+
+use super::{Chip, Costs};
+use crate::{
+    failure::Failure,
+    scene::{Built, Shape},
+    trial::{Counts, Rays, Work, scene},
+    units::count,
+};
+
+/// What a scene will cost on a chip.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Prediction {
+    chip: Chip,
+    costs: Costs,
+    /// Instructions of a closest hit on average, over camera and bounce rays.
+    pub typical: f64,
+    /// Those of the dearest of these rays.
+    dearest: f64,
+    /// Those that no ray exceeds: every node is visited once, and every reference tested.
+    bound: f64,
+}
+
+impl Prediction {
+    /// That of `primitives` under a structure, from what `rays` visit; `None` if its kind was not measured.
+    pub fn new<P: Primitives>(chip: Chip, built: &Built, primitives: &P, rays: &Rays) -> Result<Option<Self>, Failure> {
+        let structure = built.structure(primitives)?;
+        let kind = structure.kind();
+        let Some(costs) = Costs::of(chip, kind) else { return Ok(None) };
+        let counts = Counts::default();
+        let scene = scene(structure, primitives, Some(&counts))?;
+        let each = rays.primary.iter().chain(&rays.bounce).map(|ray| {
+            let Work { nodes, tests } = Work::of(&*scene, &counts, [ray].into_iter());
+            costs.instructions(nodes, tests)
+        });
+        let each: Vec<f64> = each.collect();
+        let bound = match kind {
+            None => costs.instructions(0.0, f64::from(primitives.len())),
+            Some(_) => {
+                let Shape { nodes, references, .. } = Shape::of(&structure);
+                costs.instructions(nodes as f64, references as f64)
+            }
+        };
+        let typical = each.iter().sum::<f64>() / each.len().max(1) as f64;
+        Ok(Some(Self { chip, costs, typical, dearest: each.into_iter().fold(0.0, f64::max), bound }))
+    }
+
+    /// Flash, RAM and instructions, for an asset of so many bytes.
+    pub fn rows(&self, asset: usize) -> [(&'static str, String); 4] {
+        let Costs { stack, code, .. } = self.costs;
+        let hundreds = |instructions: f64| count((instructions / 100.0).round() as u64 * 100);
+        let (typical, dearest, bound) = (hundreds(self.typical), hundreds(self.dearest), hundreds(self.bound));
+        [
+            ("flash", format!("{} bytes: the asset, and about {} of code", count(asset + code), count(code))),
+            ("RAM", format!("none but {} bytes of stack", count(stack))),
+            ("a ray", format!("{typical} instructions on average, {dearest} at most of those tried")),
+            ("worst case", format!("{bound} instructions, if all nodes are visited and all references tested")),
+        ]
+    }
+}
+
+impl fmt::Display for Prediction {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "about {} instructions a ray on a {}", count(self.typical.round() as u64), self.chip.title())
+    }
+}
