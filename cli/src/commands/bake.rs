@@ -39,6 +39,9 @@ pub struct Bake {
     /// Keep the triangles' numbers where a structure (bvh, dual-split) puts them into another order, for 4 to 8 bytes each
     #[arg(long)]
     keep_numbers: bool,
+    /// Put the vertices on a lattice of 16 bits per coordinate: 6 bytes each instead of 12
+    #[arg(long)]
+    lattice: bool,
     /// The most bytes that the asset may have, such as 64K; the structure is made to fit
     #[arg(long, value_name = "BYTES", value_parser = parse_bytes)]
     fit: Option<usize>,
