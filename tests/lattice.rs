@@ -38,8 +38,7 @@ fn hits_are_those_of_the_decoded_mesh() {
         let count = 3 + random.below(40);
         let (frame, numbers) = vertices(&mut random, count);
         let corner = |random: &mut Random| random.below(count) as u16;
-        let triangles: Vec<[u16; 3]> =
-            (0..1 + random.below(48)).map(|_| [0; 3].map(|_| corner(&mut random))).collect();
+        let triangles: Vec<[u16; 3]> = (0..1 + random.below(48)).map(|_| [0; 3].map(|_| corner(&mut random))).collect();
         let masks: Vec<u32> = triangles.iter().map(|_| random.pick(&[1, 2, 3])).collect();
         let sides = random.pick(&[Sides::Both, Sides::Front]);
         let on_lattice = LatticeMesh::new(&frame, &numbers, &triangles[..]).unwrap();

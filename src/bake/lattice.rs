@@ -52,7 +52,8 @@ impl OnLattice {
 pub fn lattice(mesh: &Mesh<'_>) -> OnLattice {
     let frame = frame((0..mesh.len()).map(|index| mesh.bounds(index)).fold(Aabb::EMPTY, |all, one| all.union(&one)));
     let lattice = Lattice::over(&frame, [LatticeMesh::LAST; 3]);
-    let vertices: Vec<_> = mesh.vertices().iter().map(|&vertex| Axis::ALL.map(|axis| nearest(&lattice, axis, vertex))).collect();
+    let vertices: Vec<_> =
+        mesh.vertices().iter().map(|&vertex| Axis::ALL.map(|axis| nearest(&lattice, axis, vertex))).collect();
     let mut snapped = OnLattice { frame, vertices, displacement: 0.0 };
     let largest = match snapped.mesh(mesh) {
         Ok(moved) => displacement(mesh, &moved),

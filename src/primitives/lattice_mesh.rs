@@ -51,11 +51,7 @@ impl<'a> LatticeMesh<'a> {
     ///
     /// [`MeshError::Frame`] if the box is not valid; otherwise it names the first triangle with a missing vertex, or one
     /// that lies beyond all coordinates.
-    pub fn new(
-        frame: &Aabb,
-        vertices: &'a [[u16; 3]],
-        indices: impl Into<Indices<'a>>,
-    ) -> Result<Self, MeshError> {
+    pub fn new(frame: &Aabb, vertices: &'a [[u16; 3]], indices: impl Into<Indices<'a>>) -> Result<Self, MeshError> {
         let indices = indices.into();
         if !frame.is_valid() {
             return Err(MeshError::Frame);

@@ -1,6 +1,6 @@
 use std::{path::PathBuf, process::ExitCode};
 
-use hitscan::{Primitives, asset::Asset, geometry::Aabb, primitives::Indices};
+use hitscan::{LatticeMesh, Primitives, asset::Asset, bake, geometry::Aabb, primitives::Indices};
 
 use super::{line, print};
 use crate::{
@@ -36,9 +36,10 @@ impl Info {
 
         let mut text = format!("{}\n", self.model.display());
         describe_mesh(&mut text, &view, &anatomy);
+        describe_lattice(&mut text, &source, &view);
         describe_structure(&mut text, &built, &view)?;
         self.describe_instancing(&mut text, &source, &built, &view)?;
-        if let Source::Asset(words) = &source {
+        if let Source::Asset { words, .. } = &source {
             describe_sections(&mut text, words);
         }
         print(&text)?;
@@ -60,7 +61,7 @@ impl Info {
             Source::Model(geometry) => {
                 Instancing::of(geometry, self.structure.structure.unwrap_or_default(), self.structure.preset)?
             }
-            Source::Asset(_) => None,
+            Source::Asset { .. } => None,
         };
         let corner = if matches!(view.mesh.indices(), Indices::Narrow(_)) { 2 } else { 4 };
         let flat = size_of_val(view.mesh.vertices()) + placed as usize * 3 * corner + built.bytes();
@@ -93,6 +94,19 @@ fn describe_mesh(text: &mut String, view: &View<'_>, anatomy: &Anatomy) {
     line(text, "non-manifold edges", count(non_manifold_edges));
     line(text, "without area", count(degenerate));
     line(text, "duplicates", count(duplicate));
+}
+
+/// The distance between planes of the asset's lattice, or what one would do to the mesh.
+fn describe_lattice(text: &mut String, source: &Source, view: &View<'_>) {
+    if let Source::Asset { words, .. } = source {
+        let on_lattice = Asset::from_words(words).map_err(Into::into).and_then(|asset| asset.read::<LatticeMesh<'_>>());
+        let Ok(on_lattice) = on_lattice else { return };
+        let step = on_lattice.frame().size() / LatticeMesh::LAST as f32;
+        line(text, "lattice", format!("planes {step} apart, vertices within {} of the model's", step.length() / 2.0));
+    } else {
+        let displacement = bake::lattice(&view.mesh).displacement;
+        line(text, "on a lattice", format!("vertices would move by up to {displacement}"));
+    }
 }
 
 fn describe_structure(text: &mut String, built: &Built, view: &View<'_>) -> Result<(), Failure> {
