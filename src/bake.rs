@@ -1,5 +1,7 @@
 //! Baking (feature `alloc`): structures and assets made on a host, for anywhere.
 
+mod lattice;
+
 use alloc::{vec, vec::Vec};
 
 use crate::{
@@ -9,9 +11,11 @@ use crate::{
     error::BuildError,
     geometry::Sphere,
     instances::Instance,
-    primitives::{Indices, Mesh, Primitives},
+    primitives::{Indices, LatticeMesh, Mesh, Primitives},
     render::{Material, Numbers},
 };
+
+pub use lattice::{OnLattice, lattice};
 
 /// Builds a structure in as much memory as that takes; its words are for its `open`, or for [`Baker::structure`].
 ///
@@ -75,8 +79,9 @@ pub fn ordered(structure: &Structure<'_>) -> Option<(Vec<u32>, Vec<u32>)> {
 
 /// The corners of a mesh's triangles in another order, which names the triangles that exist.
 #[must_use]
-pub fn reorder(mesh: &Mesh<'_>, order: &[u32]) -> Vec<[u32; 3]> {
-    order.iter().filter_map(|&triangle| mesh.indices().get(triangle)).collect()
+pub fn reorder<'a>(mesh: impl Into<Indices<'a>>, order: &[u32]) -> Vec<[u32; 3]> {
+    let indices = mesh.into();
+    order.iter().filter_map(|&triangle| indices.get(triangle)).collect()
 }
 
 /// Puts sections together into an asset: the same bytes on every host. See [`Asset`](crate::asset::Asset).
@@ -96,15 +101,28 @@ impl Baker {
     #[must_use]
     pub fn mesh(self, mesh: &Mesh<'_>) -> Self {
         let vertices = mesh.vertices().iter().flat_map(|v| v.to_array()).map(f32::to_bits).collect();
-        let (indices, count) = (mesh.indices(), mesh.len());
+        self.section(Kind::Vertices, vertices).indices(mesh.indices(), mesh.vertices().len())
+    }
+
+    /// The same with a mesh on a lattice: its vertices, in half the bytes, and its indices.
+    #[must_use]
+    pub fn lattice_mesh(self, mesh: &LatticeMesh<'_>) -> Self {
+        let frame = [mesh.frame().min, mesh.frame().max].into_iter().flat_map(|corner| corner.to_array());
+        let mut words = vec![mesh.vertices().len() as u32];
+        words.extend(frame.map(f32::to_bits));
+        let numbers: Vec<u32> = mesh.vertices().iter().flatten().map(|&number| u32::from(number)).collect();
+        words.extend(halves(&numbers));
+        self.section(Kind::LatticeVertices, words).indices(mesh.indices(), mesh.vertices().len())
+    }
+
+    fn indices(self, indices: Indices<'_>, vertices: usize) -> Self {
+        let count = indices.len() as u32;
         let corners = (0..count).flat_map(|triangle| indices.get(triangle)).flatten();
-        let narrow = matches!(indices, Indices::Narrow(_)) || mesh.vertices().len() <= 1 << 16;
-        let section = if narrow {
-            (Kind::NarrowIndices, counted_halves(count, corners))
+        if matches!(indices, Indices::Narrow(_)) || vertices <= 1 << 16 {
+            self.section(Kind::NarrowIndices, counted_halves(count, corners))
         } else {
-            (Kind::WideIndices, corners.collect())
-        };
-        self.section(Kind::Vertices, vertices).section(section.0, section.1)
+            self.section(Kind::WideIndices, corners.collect())
+        }
     }
 
     /// The same with spheres.

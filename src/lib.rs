@@ -144,7 +144,7 @@ pub use error::Error;
 pub use geometry::{PreparedRay, Ray};
 pub use glam;
 pub use instances::{Instance, Instances};
-pub use primitives::{Hit, Mesh, Primitives, Span, from_fn};
+pub use primitives::{Hit, LatticeMesh, Mesh, Primitives, Span, from_fn};
 pub use scene::Scene;
 
 mod math;

@@ -7,6 +7,8 @@ use core::fmt;
 pub enum Kind {
     /// Positions, three `f32` each.
     Vertices,
+    /// How many vertices, the box that their lattice is over, then three `u16` each.
+    LatticeVertices,
     /// How many triangles, then three `u16` each.
     NarrowIndices,
     /// Triangles, three `u32` each.
@@ -40,8 +42,9 @@ pub enum Kind {
 }
 
 impl Kind {
-    const KNOWN: [Self; 15] = [
+    const KNOWN: [Self; 16] = [
         Self::Vertices,
+        Self::LatticeVertices,
         Self::NarrowIndices,
         Self::WideIndices,
         Self::Spheres,
@@ -62,6 +65,7 @@ impl Kind {
     pub(crate) const fn code(self) -> u32 {
         match self {
             Self::Vertices => u32::from_le_bytes(*b"vert"),
+            Self::LatticeVertices => u32::from_le_bytes(*b"lvtx"),
             Self::NarrowIndices => u32::from_le_bytes(*b"idx2"),
             Self::WideIndices => u32::from_le_bytes(*b"idx4"),
             Self::Spheres => u32::from_le_bytes(*b"sphr"),
@@ -94,6 +98,7 @@ impl fmt::Display for Kind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Vertices => f.write_str("vertices"),
+            Self::LatticeVertices => f.write_str("lattice vertices"),
             Self::NarrowIndices => f.write_str("16-bit indices"),
             Self::WideIndices => f.write_str("32-bit indices"),
             Self::Spheres => f.write_str("spheres"),

@@ -44,6 +44,10 @@ impl<P: Primitives> Primitives for Counted<'_, P> {
         self.primitives.bounds(index)
     }
 
+    fn frame(&self) -> Option<Aabb> {
+        self.primitives.frame()
+    }
+
     fn intersect(&self, index: u32, ray: &PreparedRay, span: &Span) -> Option<Hit> {
         self.tests.set(self.tests.get().saturating_add(1));
         self.primitives.intersect(index, ray, span)

@@ -1,74 +1,13 @@
 use core::fmt;
 
-use glam::{Vec2, Vec3};
+use glam::Vec3;
 
-use super::{Hit, Primitives, Probe, Proximity, Span, Surface, unit};
+use super::{Hit, Indices, Primitives, Probe, Proximity, Span, Surface};
 use crate::{
     asset::{Asset, AssetError, Kind, Stored},
     error::Error,
-    geometry::{Aabb, PreparedRay, Ray, Triangle, in_range, intersect_triangle},
+    geometry::{Aabb, PreparedRay, Ray, Triangle, intersect_triangle},
 };
-
-/// The corners of triangles: three vertex numbers each, in 16 bits where they fit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Indices<'a> {
-    /// Numbers up to 65,535: 6 bytes a triangle.
-    Narrow(&'a [[u16; 3]]),
-    /// Numbers up to 2^32 - 1: 12 bytes a triangle.
-    Wide(&'a [[u32; 3]]),
-}
-
-impl<'a> Indices<'a> {
-    /// How many triangles there are.
-    #[inline(always)]
-    #[must_use]
-    pub const fn len(&self) -> usize {
-        match self {
-            Self::Narrow(list) => list.len(),
-            Self::Wide(list) => list.len(),
-        }
-    }
-
-    /// Whether there are none.
-    #[must_use]
-    pub const fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
-
-    /// The corners of a triangle.
-    #[inline(always)]
-    #[must_use]
-    pub fn get(&self, triangle: u32) -> Option<[u32; 3]> {
-        match self {
-            Self::Narrow(list) => list.get(triangle as usize).map(|corners| corners.map(u32::from)),
-            Self::Wide(list) => list.get(triangle as usize).copied(),
-        }
-    }
-}
-
-impl<'a> From<&'a [[u16; 3]]> for Indices<'a> {
-    fn from(list: &'a [[u16; 3]]) -> Self {
-        Self::Narrow(list)
-    }
-}
-
-impl<'a> From<&'a [[u32; 3]]> for Indices<'a> {
-    fn from(list: &'a [[u32; 3]]) -> Self {
-        Self::Wide(list)
-    }
-}
-
-impl<'a, const N: usize> From<&'a [[u16; 3]; N]> for Indices<'a> {
-    fn from(list: &'a [[u16; 3]; N]) -> Self {
-        Self::Narrow(list)
-    }
-}
-
-impl<'a, const N: usize> From<&'a [[u32; 3]; N]> for Indices<'a> {
-    fn from(list: &'a [[u32; 3]; N]) -> Self {
-        Self::Wide(list)
-    }
-}
 
 /// The sides from which triangles can be hit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -103,6 +42,8 @@ pub enum MeshError {
     },
     /// More than 2^32 - 2 triangles.
     TooMany,
+    /// The box of a lattice is empty, not finite or beyond [`MAX_COORDINATE`](crate::geometry::MAX_COORDINATE).
+    Frame,
     /// Not one mask per triangle.
     Masks {
         /// How many masks were given.
@@ -121,6 +62,7 @@ impl fmt::Display for MeshError {
             Self::Vertex { triangle, vertex } => {
                 write!(f, "vertex {vertex} of triangle {triangle} is not finite or beyond 2^126")
             }
+            Self::Frame => write!(f, "the box of the lattice is empty, not finite or beyond 2^126"),
             Self::TooMany => write!(f, "a mesh holds at most 2^32 - 2 triangles"),
             Self::Masks { masks, triangles } => write!(f, "{masks} masks were given for {triangles} triangles"),
         }
@@ -157,19 +99,7 @@ impl<'a> Mesh<'a> {
     /// [`MeshError`] names the first triangle with a missing or non-finite vertex.
     pub fn new(vertices: &'a [Vec3], indices: impl Into<Indices<'a>>) -> Result<Self, MeshError> {
         let indices = indices.into();
-        let count = u32::try_from(indices.len()).ok().filter(|&n| n < u32::MAX).ok_or(MeshError::TooMany)?;
-        for triangle in 0..count {
-            for vertex in indices.get(triangle).into_iter().flatten() {
-                let position = vertices.get(vertex as usize).ok_or(MeshError::Index {
-                    triangle,
-                    vertex,
-                    vertices: vertices.len() as u32,
-                })?;
-                if !in_range(*position) {
-                    return Err(MeshError::Vertex { triangle, vertex });
-                }
-            }
-        }
+        indices.check(vertices.len(), |vertex| vertices.get(vertex as usize).copied())?;
         Ok(Self { vertices, indices, sides: Sides::Both, masks: None })
     }
 
@@ -215,6 +145,12 @@ impl<'a> Mesh<'a> {
     }
 }
 
+impl<'a> From<&Mesh<'a>> for Indices<'a> {
+    fn from(mesh: &Mesh<'a>) -> Self {
+        mesh.indices
+    }
+}
+
 impl Primitives for Mesh<'_> {
     #[inline(always)]
     fn len(&self) -> u32 {
@@ -229,26 +165,13 @@ impl Primitives for Mesh<'_> {
     #[inline(always)]
     fn intersect(&self, index: u32, ray: &PreparedRay, span: &Span) -> Option<Hit> {
         let [a, b, c] = self.indices.get(index)?;
-        let corner = |vertex: u32| self.vertices.get(vertex as usize).map(Vec3::as_ref);
+        let corner = |vertex: u32| self.vertices.get(vertex as usize).map(AsRef::<[f32; 3]>::as_ref);
         let crossing = intersect_triangle([corner(a)?, corner(b)?, corner(c)?], ray, span.t_min(), span.t_max())?;
         if self.sides == Sides::Front && !crossing.front { None } else { span.accept(crossing.t, index) }
     }
 
-    /// The point is made from the corners, so its error does not grow with the distance from which it was hit.
     fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
-        let triangle = self.triangle(hit.primitive);
-        let Some(prepared) = ray.prepare() else { return Surface::facing(ray, hit.t) };
-        let (v, w) = triangle.weights(&prepared);
-        let point = triangle.a * (1.0 - v - w) + triangle.b * v + triangle.c * w;
-        let normal = unit(triangle.normal());
-        let front = match triangle.intersect(&prepared, f32::MIN, f32::MAX) {
-            Some(crossing) => crossing.front,
-            None => ray.direction.dot(normal) < 0.0,
-        };
-        // Seven roundings: three products, two sums, and the weights' two; Physically Based Rendering, §6.8.
-        let magnitude = triangle.a.abs() + triangle.b.abs() + triangle.c.abs();
-        let error = magnitude.max_element() * (8.0 / 16_777_216.0);
-        Surface { point, geometric_normal: normal, shading_normal: normal, uv: Vec2::new(v, w), front, error }
+        Surface::of_triangle(&self.triangle(hit.primitive), ray, hit)
     }
 
     #[inline(always)]
@@ -285,26 +208,9 @@ impl Proximity for Mesh<'_> {
 impl<'a> Stored<'a> for Mesh<'a> {
     fn read(asset: &Asset<'a>) -> Result<Self, Error> {
         let words = asset.section(Kind::Vertices)?;
-        let shape = |kind, words: &[u32]| AssetError::Shape { kind, words: words.len() };
-        let vertices: &[Vec3] = bytemuck::try_cast_slice(words).map_err(|_| shape(Kind::Vertices, words))?;
-        let indices = match asset.section(Kind::NarrowIndices) {
-            Ok(words) => {
-                let error = shape(Kind::NarrowIndices, words);
-                let (&count, words) = words.split_first().ok_or(error)?;
-                let halves: &[u16] = bytemuck::try_cast_slice(words).map_err(|_| error)?;
-                let used = (count as usize).checked_mul(3).ok_or(error)?;
-                if used.next_multiple_of(2) != halves.len() {
-                    return Err(error.into());
-                }
-                let halves = halves.get(..used).ok_or(error)?;
-                Indices::Narrow(bytemuck::try_cast_slice(halves).map_err(|_| error)?)
-            }
-            Err(_) => {
-                let words = asset.section(Kind::WideIndices)?;
-                Indices::Wide(bytemuck::try_cast_slice(words).map_err(|_| shape(Kind::WideIndices, words))?)
-            }
-        };
-        Ok(Self::new(vertices, indices)?)
+        let error = AssetError::Shape { kind: Kind::Vertices, words: words.len() };
+        let vertices: &[Vec3] = bytemuck::try_cast_slice(words).map_err(|_| error)?;
+        Ok(Self::new(vertices, asset.read::<Indices<'_>>()?)?)
     }
 }
 

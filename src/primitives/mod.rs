@@ -6,6 +6,8 @@
 mod counted;
 mod from_fn;
 mod hit;
+mod indices;
+mod lattice_mesh;
 mod mesh;
 mod pair;
 mod proximity;
@@ -16,7 +18,9 @@ mod surface;
 pub use counted::Counted;
 pub use from_fn::{FromFn, from_fn};
 pub use hit::{Hit, Span};
-pub use mesh::{Indices, Mesh, MeshError, Sides};
+pub use indices::Indices;
+pub use lattice_mesh::LatticeMesh;
+pub use mesh::{Mesh, MeshError, Sides};
 pub use proximity::{Nearest, Probe, Proximity};
 pub use reordered::{Order, OrderError, Renumbering, Reordered};
 pub use spheres::{SphereError, Spheres};
@@ -72,6 +76,13 @@ pub trait Primitives {
     /// It may be larger than the shape, never smaller, and must be the same at every call.
     fn bounds(&self, index: u32) -> Aabb;
 
+    /// A box for structures to take as that of everything, if not the least one: the frame of shapes on a lattice.
+    ///
+    /// What of the shapes lies outside, a structure's box contains all the same.
+    fn frame(&self) -> Option<Aabb> {
+        None
+    }
+
     /// The first point in `span` where `ray` meets the shape `index`.
     ///
     /// Offer the parameters at which the ray meets it to [`Span::accept`], the least first, and return its first answer.
@@ -125,6 +136,10 @@ impl<P: Primitives + ?Sized> Primitives for &P {
         (**self).bounds(index)
     }
     #[inline(always)]
+    fn frame(&self) -> Option<Aabb> {
+        (**self).frame()
+    }
+    #[inline(always)]
     fn intersect(&self, index: u32, ray: &PreparedRay, span: &Span) -> Option<Hit> {
         (**self).intersect(index, ray, span)
     }
@@ -146,7 +161,7 @@ impl<P: Primitives + ?Sized> Primitives for &P {
     }
 }
 
-/// The box around all of `primitives`, or the first whose bounds are not valid.
+/// The box around all of `primitives` and their frame, or the first whose bounds are not valid.
 pub(crate) fn bounds_of<P: Primitives + ?Sized>(primitives: &P) -> Result<Aabb, u32> {
     let mut all = Aabb::EMPTY;
     for index in 0..primitives.len() {
@@ -156,5 +171,6 @@ pub(crate) fn bounds_of<P: Primitives + ?Sized>(primitives: &P) -> Result<Aabb, 
         }
         all = all.union(&bounds);
     }
-    Ok(all)
+    let is_framed = !all.is_empty();
+    Ok(primitives.frame().filter(|frame| is_framed && frame.is_valid()).map_or(all, |frame| all.union(&frame)))
 }

@@ -157,6 +157,10 @@ impl<P: Primitives> Primitives for Reordered<'_, P> {
         self.primitives.bounds(index)
     }
 
+    fn frame(&self) -> Option<Aabb> {
+        self.primitives.frame()
+    }
+
     #[inline]
     fn intersect(&self, index: u32, ray: &PreparedRay, span: &Span) -> Option<Hit> {
         let number = self.renumbering.numbers.get(index)?;

@@ -1,6 +1,10 @@
 use glam::{Vec2, Vec3};
 
-use crate::{geometry::Ray, math};
+use super::Hit;
+use crate::{
+    geometry::{Ray, Triangle},
+    math,
+};
 
 /// A surface at a hit: what shading and secondary rays need.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,6 +33,24 @@ impl Surface {
         // t to 2^-17, three roundings for the point.
         let error = magnitude.max_element() / 65_536.0;
         Self { point, geometric_normal: normal, shading_normal: normal, uv: Vec2::ZERO, front: true, error }
+    }
+
+    /// The surface of a triangle that `ray` hits.
+    ///
+    /// The point is made from the corners, so its error does not grow with the distance from which it was hit.
+    pub(super) fn of_triangle(triangle: &Triangle, ray: &Ray, hit: &Hit) -> Self {
+        let Some(prepared) = ray.prepare() else { return Self::facing(ray, hit.t) };
+        let (v, w) = triangle.weights(&prepared);
+        let point = triangle.a * (1.0 - v - w) + triangle.b * v + triangle.c * w;
+        let normal = unit(triangle.normal());
+        let front = match triangle.intersect(&prepared, f32::MIN, f32::MAX) {
+            Some(crossing) => crossing.front,
+            None => ray.direction.dot(normal) < 0.0,
+        };
+        // Seven roundings: three products, two sums, and the weights' two; Physically Based Rendering, §6.8.
+        let magnitude = triangle.a.abs() + triangle.b.abs() + triangle.c.abs();
+        let error = magnitude.max_element() * (8.0 / 16_777_216.0);
+        Self { point, geometric_normal: normal, shading_normal: normal, uv: Vec2::new(v, w), front, error }
     }
 
     /// The geometric normal on the side from which the ray came.

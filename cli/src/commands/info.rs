@@ -1,6 +1,6 @@
 use std::{path::PathBuf, process::ExitCode};
 
-use hitscan::{Mesh, Primitives, asset::Asset, geometry::Aabb, primitives::Indices};
+use hitscan::{LatticeMesh, Mesh, Primitives, asset::Asset, bake, geometry::Aabb, primitives::Indices};
 
 use super::{line, predict, print};
 use crate::{
@@ -40,10 +40,11 @@ impl Info {
 
         let mut text = format!("{}\n", self.model.display());
         describe_mesh(&mut text, &view, &anatomy);
+        describe_lattice(&mut text, &source, &view);
         describe_structure(&mut text, &built, &view)?;
         self.describe_instancing(&mut text, &source, &built, &view)?;
         let mut asset = None;
-        if let Source::Asset(words) = &source {
+        if let Source::Asset { words, .. } = &source {
             describe_sections(&mut text, words);
             asset = Some(words.len() * 4);
         }
@@ -70,7 +71,7 @@ impl Info {
             Source::Model(geometry) => {
                 Instancing::of(geometry, self.structure.structure.unwrap_or_default(), self.structure.preset)?
             }
-            Source::Asset(_) => None,
+            Source::Asset { .. } => None,
         };
         let flat = bytes_of(&view.mesh) + built.bytes();
         let (unique, bytes) = match instancing {
@@ -108,6 +109,19 @@ fn describe_mesh(text: &mut String, view: &View<'_>, anatomy: &Anatomy) {
     line(text, "non-manifold edges", count(non_manifold_edges));
     line(text, "without area", count(degenerate));
     line(text, "duplicates", count(duplicate));
+}
+
+/// The distance between planes of the asset's lattice, or what one would do to the mesh.
+fn describe_lattice(text: &mut String, source: &Source, view: &View<'_>) {
+    if let Source::Asset { words, .. } = source {
+        let on_lattice = Asset::from_words(words).map_err(Into::into).and_then(|asset| asset.read::<LatticeMesh<'_>>());
+        let Ok(on_lattice) = on_lattice else { return };
+        let step = on_lattice.frame().size() / LatticeMesh::LAST as f32;
+        line(text, "lattice", format!("planes {step} apart, vertices within {} of the model's", step.length() / 2.0));
+    } else {
+        let displacement = bake::lattice(&view.mesh).displacement;
+        line(text, "on a lattice", format!("vertices would move by up to {displacement}"));
+    }
 }
 
 fn describe_structure(text: &mut String, built: &Built, view: &View<'_>) -> Result<(), Failure> {

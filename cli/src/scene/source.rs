@@ -1,7 +1,7 @@
 use std::{fs::File, io::Read, path::Path};
 
 use hitscan::{
-    Error, Mesh,
+    Error, LatticeMesh, Mesh,
     accel::Structure,
     asset::{Asset, AssetError, Kind},
     glam::Vec3,
@@ -25,8 +25,13 @@ const MAGIC: &[u8; 4] = b"HITS";
 pub enum Source {
     /// A mesh file.
     Model(Geometry),
-    /// The words of an asset.
-    Asset(Vec<u32>),
+    /// An asset.
+    Asset {
+        /// Its words.
+        words: Vec<u32>,
+        /// Where its vertices are, if they stand on a lattice.
+        positions: Vec<Vec3>,
+    },
 }
 
 /// Triangles and their materials.
@@ -132,8 +137,9 @@ impl Source {
             return Err(Failure::new(what, "fetch or bake the asset again"));
         }
         // Whatever else the asset is for, its header, table and checksum must be right.
-        Asset::from_words(&words).map_err(|error| damaged(path, error))?;
-        Ok(Self::Asset(words))
+        let asset = Asset::from_words(&words).map_err(|error| damaged(path, error))?;
+        let positions = asset.read().map_or(Vec::new(), |mesh: LatticeMesh<'_>| mesh.positions().collect());
+        Ok(Self::Asset { words, positions })
     }
 
     /// What there is to see, checked in full; `path` is for the error.
@@ -149,12 +155,17 @@ impl Source {
                 let mesh = geometry.mesh().map_err(name)?;
                 Ok(View { mesh, materials, structure: None, renumbering: None, y_up: geometry.y_up, seconds: 0.0 })
             }
-            Self::Asset(words) => {
+            Self::Asset { words, positions } => {
                 let progress = Progress::spinner("checking the asset …");
                 let damaged = |error| damaged(path, error);
                 let asset = Asset::from_words(words).map_err(|error| damaged(error.into()))?;
                 let has = |kind| asset.sections().any(|section| section.kind == kind);
-                let mesh = asset.read().map_err(damaged)?;
+                let mesh = if has(Kind::LatticeVertices) {
+                    let on_lattice: LatticeMesh<'_> = asset.read().map_err(damaged)?;
+                    Mesh::new(positions, on_lattice.indices()).map_err(|error| damaged(error.into()))?
+                } else {
+                    asset.read().map_err(damaged)?
+                };
                 let materials = has(Kind::Materials).then(|| asset.read().map_err(damaged)).transpose()?;
                 // An asset without one is a list.
                 let structure = match asset.read() {

@@ -49,6 +49,37 @@ fn the_budget_is_kept_or_refused() {
 }
 
 #[test]
+fn vertices_on_a_lattice_take_half_the_bytes() {
+    let folder = Folder::new();
+    folder.write("waves.obj", waves(20));
+    for structure in ["dual-split", "kdtree-compact", "list"] {
+        folder.succeed(&format!("bake waves.obj -o plain.hits -s {structure}"));
+        let text = folder.succeed(&format!("bake waves.obj -o lattice.hits -s {structure} --lattice"));
+        let line = text.lines().find_map(|line| line.strip_prefix("vertices moved by at most ")).unwrap();
+        let moved: f32 = line.split_once(' ').unwrap().0.parse().unwrap();
+        assert!(moved > 0.0 && moved < 3.0e-4, "{moved}");
+        let text = folder.succeed("info lattice.hits");
+        assert!(text.contains("lattice vertices") && text.contains("planes [0.000"), "{text}");
+        assert!(folder.succeed("info waves.obj").contains(&format!("vertices would move by up to {moved}")));
+        let down = |i: u32| [(i % 50) as f32 * 0.4, 9.0, (i / 50) as f32 * 0.4, 0.01, -1.0, 0.02];
+        folder.write_rays("down.rays", &(0..2500).map(down).collect::<Vec<_>>());
+        folder.succeed("cast plain.hits down.rays -o plain.bin");
+        folder.succeed("cast lattice.hits down.rays -o lattice.bin");
+        let parameters = |name: &str| -> Vec<f32> {
+            let bytes = folder.read(name);
+            bytes.chunks(8).map(|hit| f32::from_le_bytes([hit[0], hit[1], hit[2], hit[3]])).collect()
+        };
+        let (plain, lattice) = (parameters("plain.bin"), parameters("lattice.bin"));
+        let close = plain.iter().zip(&lattice).filter(|(a, b)| (*a - *b).abs() < 0.01).count();
+        assert!(close > 2000, "{close}");
+    }
+    // 441 vertices.
+    let bytes = |name| folder.read(name).len() as i64;
+    assert!((bytes("plain.hits") - bytes("lattice.hits") - 441 * 6).abs() < 64);
+    folder.succeed("render lattice.hits -o picture.png --size 40x30");
+}
+
+#[test]
 fn meshes_and_assets_are_described() {
     let folder = Folder::new();
     let open = TETRAHEDRON.replace("f 2 3 4", "f 1 2 3\nf 1 1 2");

@@ -3,7 +3,7 @@
 use core::hint::black_box;
 
 use hitscan::{
-    Accelerator, Arena, Bvh, Instance, List, Mesh, Primitives, Traversal,
+    Accelerator, Arena, Bvh, Instance, LatticeMesh, List, Mesh, Primitives, Traversal,
     accel::{Counted, Hierarchy, Inside, Mailbox, Structure},
     asset::{Asset, Stored},
     from_fn,
@@ -106,6 +106,7 @@ fn assets() {
         asset.parts().for_each(|part| _ = black_box(part));
         read::<Structure<'_>>(&asset);
         read::<Mesh<'_>>(&asset);
+        read::<LatticeMesh<'_>>(&asset);
         read::<Spheres<'_>>(&asset);
         read::<Materials<'_>>(&asset);
         read::<Renumbering<'_>>(&asset);

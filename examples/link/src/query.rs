@@ -3,14 +3,14 @@
 use core::hint::black_box;
 
 use hitscan::{
-    Accelerator, Arena, Hit, Instance, Instances, List, Mesh, Primitives, Scene,
+    Accelerator, Arena, Hit, Instance, Instances, LatticeMesh, List, Mesh, Primitives, Scene,
     accel::{Bounded, Hierarchy, Structure},
     geometry::Transform,
-    primitives::{Order, Proximity, Renumbering, Reordered, Spheres},
+    primitives::{Indices, Order, Proximity, Renumbering, Reordered, Spheres},
 };
 
 use crate::{
-    input::{float, matrix, ray, some, sphere, vector, word},
+    input::{aabb, float, matrix, ray, some, sphere, vector, word},
     plan,
 };
 
@@ -22,6 +22,7 @@ pub fn all() {
     let Ok(mesh) = mesh.and_then(|mesh| mesh.with_masks(some(word, &mut masks))) else { return };
     let Ok(spheres) = Spheres::new(some(sphere, &mut balls)) else { return };
     with(&mesh);
+    lattice(mesh.indices());
     with(&spheres);
     with(&(mesh, spheres));
     let (mut numbers, mut places) = (None, None);
@@ -30,6 +31,15 @@ pub fn all() {
         && let Ok(reordered) = Reordered::new(mesh, numbers)
     {
         with(&reordered);
+    }
+}
+
+fn lattice(indices: Indices<'_>) {
+    let mut numbers = None;
+    let numbers = some(|| [word() as u16, word() as u16, word() as u16], &mut numbers);
+    if let Ok(mesh) = LatticeMesh::new(&aabb(), numbers, indices) {
+        black_box(mesh.positions().last());
+        with(&mesh);
     }
 }
 

@@ -1,7 +1,7 @@
 //! The first tier: the shear test in `f32` with a proven bound on its error.
 
 use super::Crossing;
-use crate::geometry::{PreparedRay, ray::Shear};
+use crate::geometry::{Axis, Lattice, PreparedRay, ray::Shear};
 
 /// Half an ulp of 1.
 const U: f32 = 1.0 / 16_777_216.0;
@@ -27,8 +27,26 @@ pub(super) enum Verdict {
     Unproven,
 }
 
-/// Three corners where they lie: they are indexed by axis, which in memory costs one load and in registers a detour.
-pub(super) type Corners<'t> = [&'t [f32; 3]; 3];
+/// A corner where it lies: asked by axis, which in memory costs one load and in registers a detour.
+pub(crate) trait Corner: Copy {
+    /// The coordinate along an axis.
+    fn along(self, axis: Axis) -> f32;
+}
+
+impl Corner for &[f32; 3] {
+    #[inline(always)]
+    fn along(self, axis: Axis) -> f32 {
+        self[axis as usize]
+    }
+}
+
+/// Half-words that number planes.
+impl Corner for (&Lattice, &[u16; 3]) {
+    #[inline(always)]
+    fn along(self, axis: Axis) -> f32 {
+        self.0.plane(axis as u32, u32::from(self.1[axis as usize]))
+    }
+}
 
 /// The corners relative to the ray's origin, sheared so that the ray runs along the third axis.
 pub(super) struct Sheared {
@@ -38,12 +56,12 @@ pub(super) struct Sheared {
 }
 
 #[inline(always)]
-pub(super) fn shear(corners: Corners<'_>, ray: &PreparedRay) -> Sheared {
+pub(super) fn shear(corners: [impl Corner; 3], ray: &PreparedRay) -> Sheared {
     let Shear { axes: [kx, ky, kz], origin: [ox, oy, oz], slope: [sx, sy], .. } = ray.shear;
     // Corner by corner, without an index: at opt-level "s" it would be checked.
     let [a, b, c] = corners.map(|v| {
-        let z = v[kz as usize] - oz;
-        [(v[kx as usize] - ox) - sx * z, (v[ky as usize] - oy) - sy * z, z]
+        let z = v.along(kz) - oz;
+        [(v.along(kx) - ox) - sx * z, (v.along(ky) - oy) - sy * z, z]
     });
     Sheared { x: [a[0], b[0], c[0]], y: [a[1], b[1], c[1]], z: [a[2], b[2], c[2]] }
 }
@@ -58,7 +76,7 @@ pub(super) fn edges(s: &Sheared) -> [f32; 3] {
 }
 
 #[inline(always)]
-pub(super) fn test(corners: Corners<'_>, ray: &PreparedRay) -> Verdict {
+pub(super) fn test(corners: [impl Corner; 3], ray: &PreparedRay) -> Verdict {
     let s = shear(corners, ray);
     let [u, v, w] = edges(&s);
     let ([ax, bx, cx], [ay, by, cy], [az, bz, cz]) = (s.x, s.y, s.z);

@@ -12,8 +12,8 @@ mod shortcut;
 
 use glam::Vec3;
 
-use self::filter::Verdict;
-use super::{Aabb, PreparedRay, moved, ray::beyond};
+use self::filter::{Corner, Verdict};
+use super::{Aabb, Axis, PreparedRay, moved, ray::beyond};
 use crate::math;
 
 /// A triangle given by its corners; counter-clockwise seen from its front.
@@ -66,9 +66,9 @@ fn agreement(signs: [Sign; 3]) -> Option<Sign> {
 
 /// [`Triangle::intersect`] for corners where they lie.
 #[inline(always)]
-pub(crate) fn intersect(corners: [&[f32; 3]; 3], ray: &PreparedRay, t_min: f32, t_max: f32) -> Option<Crossing> {
+pub(crate) fn intersect(corners: [impl Corner; 3], ray: &PreparedRay, t_min: f32, t_max: f32) -> Option<Crossing> {
     let certify = |front| {
-        let [a, b, c] = corners.map(|&v| Vec3::from_array(v));
+        let [a, b, c] = corners.map(|v| Vec3::new(v.along(Axis::X), v.along(Axis::Y), v.along(Axis::Z)));
         Triangle { a, b, c }.certify(ray, t_min, t_max, front)
     };
     match filter::test(corners, ray) {
