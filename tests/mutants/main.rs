@@ -4,8 +4,9 @@
 #[path = "../common/mod.rs"]
 mod common;
 mod walk;
+mod walks;
 
-use common::{FAMILIES, Random, adversarial_mesh, adversarial_ray, bits, boxed, noise};
+use common::{FAMILIES, Random, adversarial_mesh, adversarial_ray, bits, boxed, noise, plans};
 use hitscan::{
     Arena, Hit, KdTree, List, Mesh, PreparedRay, Primitives, Ray, Scene, Span, from_fn,
     geometry::{Aabb, Triangle},
@@ -13,6 +14,7 @@ use hitscan::{
     kdtree::{Options, Split},
 };
 use walk::{Mutant, Shape, Walker};
+use walks::Shortcut;
 
 /// A hit, or none, as bits.
 type Answer = Option<(u32, u32)>;
@@ -34,8 +36,16 @@ fn options(random: &mut Random) -> Options {
     }
 }
 
+/// Shapes to cast rays at.
+struct Case<'a> {
+    shapes: &'a [Shape],
+    primitives: &'a dyn Primitives,
+    tree: &'a KdTree<'a>,
+    library: Library<'a>,
+}
+
 /// Calls `check` with scenes and rays until it is content or `rays` were cast; how many were.
-fn fuzz(rays: usize, mut check: impl FnMut(&[Shape], &KdTree, Library, &Ray) -> bool) -> usize {
+fn fuzz(rays: usize, mut check: impl FnMut(&Case, &Ray) -> bool) -> usize {
     let mut random = Random::new(8);
     let mut memory = vec![0; 1 << 15];
     let mut cast = 0;
@@ -63,6 +73,7 @@ fn fuzz(rays: usize, mut check: impl FnMut(&[Shape], &KdTree, Library, &Ray) -> 
         let list = Scene::new(List::new(&both).unwrap(), &both).unwrap();
         let scene = Scene::new(tree, &both).unwrap();
         let library = |ray: &Ray| [bits(list.closest_hit(ray)), bits(scene.closest_hit(ray))];
+        let case = Case { shapes: &shapes, primitives: &both, tree: &tree, library: &library };
         for _ in 0..100 {
             let mut ray = adversarial_ray(&mut random, family, &corners);
             ray.origin *= small;
@@ -74,7 +85,7 @@ fn fuzz(rays: usize, mut check: impl FnMut(&[Shape], &KdTree, Library, &Ray) -> 
                 ray.t_min = hit.t;
             }
             cast += 1;
-            if check(&shapes, &tree, &library, &ray) || cast >= rays {
+            if check(&case, &ray) || cast >= rays {
                 return cast;
             }
         }
@@ -83,7 +94,7 @@ fn fuzz(rays: usize, mut check: impl FnMut(&[Shape], &KdTree, Library, &Ray) -> 
 
 #[test]
 fn the_right_rules_answer_as_the_library() {
-    fuzz(300_000, |shapes, tree, library, ray| {
+    fuzz(300_000, |Case { shapes, tree, library, .. }, ray| {
         assert_eq!(library(ray), answers(Mutant::Right, shapes, tree, ray), "{ray:?} {shapes:?}");
         false
     });
@@ -94,7 +105,7 @@ fn every_mutant_is_caught() {
     let mut survivors = vec![];
     for mutant in Mutant::ALL {
         const ENOUGH: usize = 3_000_000;
-        let caught = fuzz(ENOUGH, |shapes, tree, _, ray| {
+        let caught = fuzz(ENOUGH, |Case { shapes, tree, .. }, ray| {
             let [list, walked] = answers(mutant, shapes, tree, ray);
             list != walked
         });
@@ -104,6 +115,59 @@ fn every_mutant_is_caught() {
         }
     }
     assert!(survivors.is_empty(), "{survivors:?}");
+}
+
+/// What the list and a walk through the boxes of a structure of this kind say.
+fn boxed_answers(mutant: Mutant, random: &mut Random, kind: usize, case: &Case, ray: &Ray) -> Option<[Answer; 2]> {
+    let mut memory = vec![0; 1 << 15];
+    let (_, structure) = plans::build(random, kind, &case.primitives, &mut memory)?;
+    let walker = || Walker::new(mutant, case.shapes, ray);
+    Some([walker().and_then(Walker::list), walker().and_then(|walker| walker.boxes(&structure))].map(bits))
+}
+
+#[test]
+fn the_rules_of_boxes_are_needed_in_every_structure() {
+    use Mutant::*;
+    let mut random = Random::new(12);
+    for kind in 0..plans::KINDS {
+        let mut differs = |mutant: Mutant, case: &Case, ray: &Ray| {
+            boxed_answers(mutant, &mut random, kind, case, ray).is_some_and(|[list, walked]| list != walked)
+        };
+        assert_eq!(fuzz(10_000, |case, ray| differs(Right, case, ray)), 10_000, "structure {kind}");
+        for mutant in
+            [ContainmentForOverflow, CutExitsForOverflow, NoWidening, FactorOnly, PruneAtBest, NoClamp, RejectAtBest]
+        {
+            const ENOUGH: usize = 500_000;
+            let caught = fuzz(ENOUGH, |case, ray| differs(mutant, case, ray));
+            println!("{mutant:?} in structure {kind} is caught by ray {caught}");
+            assert!(caught < ENOUGH, "{mutant:?} in structure {kind}");
+        }
+    }
+}
+
+#[test]
+fn every_shortcut_is_caught() {
+    for shortcut in Shortcut::ALL {
+        let answer = |taken: bool, case: &Case, ray: &Ray, before: &Ray| {
+            let walker = |ray| Walker::new(Mutant::Right, case.shapes, ray);
+            bits(walker(ray).and_then(|it| it.shortcut(shortcut, taken, walker(before))))
+        };
+        let mut before = Ray::new(Vec3::ZERO, Vec3::X);
+        fuzz(30_000, |case, ray| {
+            if shortcut != Shortcut::BestPassedDown {
+                assert_eq!(answer(false, case, ray, &before), (case.library)(ray)[0], "{shortcut:?} {ray:?}");
+            }
+            false
+        });
+        const ENOUGH: usize = 3_000_000;
+        let caught = fuzz(ENOUGH, |case, ray| {
+            let differs = answer(true, case, ray, &before) != answer(false, case, ray, &before);
+            before = *ray;
+            differs
+        });
+        println!("{shortcut:?} is caught by ray {caught}");
+        assert!(caught < ENOUGH, "{shortcut:?}");
+    }
 }
 
 /// Triangles by the plain test of Möller and Trumbore (1997), whose `t` may be far off.
