@@ -324,6 +324,10 @@ fn structured_lies_are_refused() {
     assert!(matches!(with(8, words[8] + 4), Err(AssetError::Table { entry: 0 })));
     assert!(matches!(with(9, u32::MAX), Err(AssetError::Table { entry: 0 })));
     assert!(matches!(asset.section(Kind::Spheres), Err(AssetError::Missing { kind: Kind::Spheres })));
+    assert!(matches!(Structure::open(Kind::Spheres, &[]), Err(Error::Asset(AssetError::NoStructure))));
+    let bare = Baker::new().finish();
+    let read = Asset::from_words(&bare).unwrap().read::<Structure<'_>>();
+    assert!(matches!(read, Err(Error::Asset(AssetError::NoStructure))));
 }
 
 #[test]

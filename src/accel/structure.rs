@@ -92,11 +92,11 @@ macro_rules! structures {
             ///
             /// # Errors
             ///
-            /// What is wrong with the words; [`AssetError::Missing`] if that kind of section is no structure.
+            /// What is wrong with the words; [`AssetError::NoStructure`] if that kind of section holds none.
             pub fn open(kind: Kind, words: &'a [u32]) -> Result<Self, Error> {
                 match kind {
                     $(Kind::$name => Ok(Self::$name($name::open(words)?)),)*
-                    _ => Err(AssetError::Missing { kind }.into()),
+                    _ => Err(AssetError::NoStructure.into()),
                 }
             }
 
@@ -227,7 +227,7 @@ macro_rules! structures {
                 const KINDS: &[Kind] = &[$(Kind::$name),*];
                 match asset.sections().find(|section| KINDS.contains(&section.kind)) {
                     Some(section) => Self::open(section.kind, section.words),
-                    None => Err(AssetError::Missing { kind: Kind::KdTree }.into()),
+                    None => Err(AssetError::NoStructure.into()),
                 }
             }
         }
