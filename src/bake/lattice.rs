@@ -102,7 +102,8 @@ fn displacement(mesh: &Mesh<'_>, moved: &LatticeMesh<'_>) -> f32 {
     let corners = (0..mesh.len()).filter_map(|triangle| mesh.indices().get(triangle)).flatten();
     let squares = corners.filter_map(|vertex| {
         let (from, to) = (mesh.vertices().get(vertex as usize)?, positions.get(vertex as usize)?);
-        Some((to.as_dvec3() - from.as_dvec3()).length_squared())
+        let square = |a: f32, b: f32| (f64::from(a) - f64::from(b)) * (f64::from(a) - f64::from(b));
+        Some(square(to.x, from.x) + square(to.y, from.y) + square(to.z, from.z))
     });
     let exact = crate::math::sqrt64(squares.fold(0.0, f64::max));
     let rounded = exact as f32;

@@ -19,8 +19,7 @@ struct Counting {
 }
 
 #[global_allocator]
-static HEAP: Counting =
-    Counting { heap: LlffHeap::empty(), live: AtomicUsize::new(0), peak: AtomicUsize::new(0) };
+static HEAP: Counting = Counting { heap: LlffHeap::empty(), live: AtomicUsize::new(0), peak: AtomicUsize::new(0) };
 
 // SAFETY: the heap's own promises; nothing but its answers is passed on.
 unsafe impl GlobalAlloc for Counting {

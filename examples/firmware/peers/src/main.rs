@@ -18,11 +18,7 @@ use firmware::{
     baked::{CONTEST, Contestant},
     camera, entry, finish, stack_of,
 };
-use hitscan::{
-    Accelerator, DualSplit, Grid, Hit, KdTree, Mesh, Primitives, Ray, Scene,
-    asset::Stored,
-    glam::Vec3,
-};
+use hitscan::{Accelerator, DualSplit, Grid, Hit, KdTree, Mesh, Primitives, Ray, Scene, asset::Stored, glam::Vec3};
 use parry3d::{
     math::Vector,
     query::{self, RayCast},
