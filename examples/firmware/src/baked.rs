@@ -6,7 +6,7 @@ use hitscan::{
     asset::{Asset, Stored},
 };
 
-use crate::Answer;
+use crate::{Answer, builds::BUILDS, hash::Hash};
 
 /// An asset, and what the host found in it.
 #[derive(Clone, Copy, Debug)]
