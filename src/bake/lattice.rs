@@ -102,7 +102,9 @@ fn displacement(mesh: &Mesh<'_>, moved: &LatticeMesh<'_>) -> f32 {
     let corners = (0..mesh.len()).filter_map(|triangle| mesh.indices().get(triangle)).flatten();
     let squares = corners.filter_map(|vertex| {
         let (from, to) = (mesh.vertices().get(vertex as usize)?, positions.get(vertex as usize)?);
-        Some((to.as_dvec3() - from.as_dvec3()).length_squared())
+        let apart = |from: f32, to: f32| f64::from(to) - f64::from(from);
+        let [x, y, z] = [apart(from.x, to.x), apart(from.y, to.y), apart(from.z, to.z)];
+        Some(x * x + y * y + z * z)
     });
     let exact = crate::math::sqrt64(squares.fold(0.0, f64::max));
     let rounded = exact as f32;
