@@ -244,7 +244,7 @@ typedef struct {
     /**
      * Not for you.
      */
-    size_t opaque[55];
+    size_t opaque[71];
 } hitscan_scene;
 
 /**

@@ -23,11 +23,12 @@ macro_rules! structures {
         impl View {
             /// The scene in an asset: its first structure, over its triangles.
             pub fn stored(asset: &Asset<'static>) -> Result<Self, Status> {
+                let triangles = Triangles::stored(asset)?;
                 for section in asset.sections() {
                     match section.kind {
                         $(Kind::$name => {
                             #[cfg(feature = $feature)]
-                            return Ok(Self::$name(asset.scene()?));
+                            return Ok(Self::$name(Scene::new(asset.read()?, triangles).map_err(Error::from)?));
                             #[cfg(not(feature = $feature))]
                             return Err(Status::LeftOut);
                         })*
@@ -35,12 +36,13 @@ macro_rules! structures {
                     }
                 }
                 #[cfg(feature = "list")]
-                return Self::listed(asset.read()?);
+                return Self::listed(triangles);
                 #[cfg(not(feature = "list"))]
                 Err(Status::LeftOut)
             }
 
             /// Builds the structure over `mesh`.
+            #[allow(unused_variables, reason = "a list needs no arena")]
             pub fn build(mesh: Triangles, arena: &mut Arena<'static>, plan: &Plan) -> Result<Self, Status> {
                 match plan {
                     #[cfg(feature = "list")]

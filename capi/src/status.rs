@@ -118,7 +118,7 @@ impl From<MeshError> for Status {
     fn from(error: MeshError) -> Self {
         match error {
             MeshError::Index { .. } => Self::Index,
-            MeshError::Vertex { .. } => Self::Vertex,
+            MeshError::Vertex { .. } | MeshError::Frame => Self::Vertex,
             MeshError::TooMany => Self::TooMany,
             MeshError::Masks { .. } => Self::Length,
         }

@@ -1,17 +1,20 @@
 //! A mesh as an asset can hold it.
 
+#[cfg(feature = "lattice")]
+use engine::LatticeMesh;
+#[cfg(feature = "numbers")]
+use engine::primitives::Reordered;
 use engine::{
     Hit, Mesh, PreparedRay, Primitives, Ray, Span,
-    asset::{Asset, Stored},
-    error::Error,
+    asset::{Asset, Kind},
     geometry::Aabb,
     glam::Vec3,
     primitives::{Probe, Proximity, Surface},
 };
-#[cfg(feature = "numbers")]
-use engine::{asset::Kind, primitives::Reordered};
 
-/// A mesh, whose triangles may stand in another order than their owner's.
+use crate::status::Status;
+
+/// A mesh, perhaps on a lattice, whose triangles may stand in another order than their owner's.
 #[derive(Clone, Copy)]
 pub enum Triangles {
     /// In order.
@@ -19,27 +22,50 @@ pub enum Triangles {
     /// With their owner's numbers.
     #[cfg(feature = "numbers")]
     Numbered(Reordered<'static, Mesh<'static>>),
+    /// With vertices on a lattice.
+    #[cfg(feature = "lattice")]
+    Lattice(LatticeMesh<'static>),
+    /// Both.
+    #[cfg(all(feature = "numbers", feature = "lattice"))]
+    NumberedLattice(Reordered<'static, LatticeMesh<'static>>),
 }
 
-/// What both kinds answer.
+/// What each kind answers.
 macro_rules! either {
     ($triangles:expr, $mesh:ident => $answer:expr) => {
         match $triangles {
             Triangles::Plain($mesh) => $answer,
             #[cfg(feature = "numbers")]
             Triangles::Numbered($mesh) => $answer,
+            #[cfg(feature = "lattice")]
+            Triangles::Lattice($mesh) => $answer,
+            #[cfg(all(feature = "numbers", feature = "lattice"))]
+            Triangles::NumberedLattice($mesh) => $answer,
         }
     };
 }
 
-impl Stored<'static> for Triangles {
-    fn read(asset: &Asset<'static>) -> Result<Self, Error> {
-        #[cfg(feature = "numbers")]
-        if asset.sections().any(|section| section.kind == Kind::Numbers) {
-            return asset.read::<Reordered<_>>().map(Self::Numbered);
-        }
-        asset.read().map(Self::Plain)
+impl Triangles {
+    /// The triangles of an asset.
+    pub fn stored(asset: &Asset<'static>) -> Result<Self, Status> {
+        let numbered = has(asset, Kind::Numbers);
+        let on_lattice = has(asset, Kind::LatticeVertices);
+        Ok(match (numbered, on_lattice) {
+            (false, false) => Self::Plain(asset.read()?),
+            #[cfg(feature = "numbers")]
+            (true, false) => Self::Numbered(asset.read()?),
+            #[cfg(feature = "lattice")]
+            (false, true) => Self::Lattice(asset.read()?),
+            #[cfg(all(feature = "numbers", feature = "lattice"))]
+            (true, true) => Self::NumberedLattice(asset.read()?),
+            #[cfg(not(all(feature = "numbers", feature = "lattice")))]
+            _ => return Err(Status::LeftOut),
+        })
     }
+}
+
+fn has(asset: &Asset<'_>, kind: Kind) -> bool {
+    asset.sections().any(|section| section.kind == kind)
 }
 
 impl Primitives for Triangles {

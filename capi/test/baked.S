@@ -1,4 +1,4 @@
-/* One mesh baked with each structure, one asset after another. */
+/* One mesh baked with each structure, one asset after another, and last on a lattice. */
     .section .rodata.assets, "a"
     .balign 4
 list:
@@ -15,6 +15,8 @@ bvh:
     .incbin "bvh.hits"
 dual:
     .incbin "dual.hits"
+lattice:
+    .incbin "lattice.hits"
 end:
 
     .section .data.rel.ro.baked, "aw"
@@ -22,9 +24,9 @@ end:
     .global baked
 baked:
 #if __SIZEOF_POINTER__ == 8
-    .quad list, grid, octree, kdtree, compact, bvh, dual, end
+    .quad list, grid, octree, kdtree, compact, bvh, dual, lattice, end
 #else
-    .long list, grid, octree, kdtree, compact, bvh, dual, end
+    .long list, grid, octree, kdtree, compact, bvh, dual, lattice, end
 #endif
 
     .section .note.GNU-stack, "", %progbits

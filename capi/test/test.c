@@ -7,9 +7,9 @@
 
 enum { TRIANGLES = 200, RAYS = 300, WORDS = 1 << 16 };
 
-/** Assets of one mesh, with each of the structures; at multiples of 4 bytes, each up to the next. */
+/** Assets of one mesh, with each of the structures, then on a lattice; at multiples of 4 bytes, each up to the next. */
 extern const unsigned char *const baked[];
-enum { BAKED = 7 };
+enum { BAKED = 7, LATTICE = BAKED };
 
 static int failures;
 static uint32_t hash = 2166136261u, seed = 1;
@@ -216,6 +216,9 @@ static void test_assets(void) {
         if (i == 0) add(expected = answers(&copy));
         same("baked", &copy, expected);
     }
+    hitscan_scene moved;
+    EXPECT(hitscan_open(&moved, baked[LATTICE], (size_t)(baked[LATTICE + 1] - baked[LATTICE])), OK);
+    add(answers(&moved));
     const size_t bytes = (size_t)(baked[1] - baked[0]);
     CHECK(opened(bytes, 0, 0, false) == HITSCAN_OK);
     EXPECT(opened(bytes, 0, 1, false), MAGIC);
