@@ -46,7 +46,10 @@ fn effort(adversary: fn(usize) -> Triangles, count: usize, plan: &Plan) -> (f64,
     (watched.asked.get() as f64 / count as f64, words.len() as f64 * 4.0 / count as f64)
 }
 
-const ADVERSARIES: [(&str, fn(usize) -> Triangles); 5] =
+/// A name, and triangles of a number.
+type Adversary = (&'static str, fn(usize) -> Triangles);
+
+const ADVERSARIES: [Adversary; 5] =
     [("identical", identical), ("crossing", crossing), ("fan", fan), ("hair", hair), ("shrinking", shrinking)];
 
 /// Whether a plan weighs what it divides; the others stop where the bytes end.
