@@ -1,14 +1,14 @@
 //! The builder: count the references of each cell, sum the counts, and fill in the references from behind.
 //!
 //! ```text
-//! | header | blocks, if a bitmask | a count per cell, later where its references begin | references |
+//! | header | blocks, if a bitmask | a count per cell, later where its references begin | references | octants |
 //! ```
 //!
 //! At the end the offsets are made narrow, or fewer, where they stand, and the references moved up to them.
 
 use super::{
     HEADER_WORDS, MAX_COUNT,
-    cells::{block_words, narrow_offsets, narrow_references, number_words},
+    cells::{block_words, narrow_offsets, narrow_references, number_words, reference_words},
     cover::Frame,
     open::Header,
     options::{Form, Options},
@@ -84,8 +84,8 @@ impl<P: Primitives + ?Sized> Builder<'_, '_, P> {
 
     /// Makes sure that there is room for the table and so many references.
     fn reserve(&self, references: usize) -> Result<(), Full> {
-        let narrow = narrow_references(self.primitives.len() as usize);
-        let at_least = self.table() + self.frame.cells() + 1 + number_words(references, narrow);
+        let references = reference_words(references, self.primitives.len() as usize);
+        let at_least = self.table() + self.frame.cells() + 1 + references;
         let available = self.words.len();
         if at_least <= available { Ok(()) } else { Err(Full { at_least, available }) }
     }
@@ -94,22 +94,20 @@ impl<P: Primitives + ?Sized> Builder<'_, '_, P> {
     fn count(&mut self, cells: u32) -> Result<bool, Full> {
         self.frame = Frame::new(&self.bounds, resolution(&self.bounds, cells));
         self.reserve(0)?;
-        // More do not fit, whatever else there is. A reference takes two bytes or more.
-        let most = self.allowed / if narrow_references(self.primitives.len() as usize) { 2 } else { 4 };
+        // More do not fit, whatever else there is: a number takes two bytes or four, its octants take one.
+        let most = self.allowed / if narrow_references(self.primitives.len() as usize) { 3 } else { 5 };
         let (frame, clip, first) = (&self.frame, self.options.clip, self.table());
         let cells = frame.cells();
         let table = self.words.get_mut(first..=first + cells).unwrap_or_default();
         table.fill(0);
         let mut references = 0;
         for primitive in 0..self.primitives.len() {
-            let fits = frame.cover(self.primitives, primitive, clip, |row| {
-                references += row.len();
-                let cells = table.get_mut(row.start as usize..row.end as usize).unwrap_or_default();
-                let fits = references <= most;
-                if fits {
-                    cells.iter_mut().for_each(|count| *count += 1);
+            let fits = frame.cover(self.primitives, primitive, clip, |cell, _| {
+                references += 1;
+                if let Some(count) = table.get_mut(cell as usize) {
+                    *count += 1;
                 }
-                fits
+                references <= most
             });
             if !fits {
                 return Ok(false);
@@ -155,13 +153,18 @@ impl<P: Primitives + ?Sized> Builder<'_, '_, P> {
             sum += *count;
             *count = sum;
         }
-        let used = number_words(self.references, narrow);
+        let used = reference_words(self.references, self.primitives.len() as usize);
         references.iter_mut().take(used).for_each(|word| *word = 0);
+        let numbers = number_words(self.references, narrow);
+        let (references, octants) = references.split_at_mut_checked(numbers).unwrap_or_default();
         for primitive in (0..self.primitives.len()).rev() {
-            frame.cover(self.primitives, primitive, clip, |row| {
-                for end in table.get_mut(row.start as usize..row.end as usize).unwrap_or_default() {
+            frame.cover(self.primitives, primitive, clip, |cell, bits| {
+                if let Some(end) = table.get_mut(cell as usize) {
                     *end = end.wrapping_sub(1);
                     put(references, *end as usize, primitive, narrow);
+                    if let Some(word) = octants.get_mut(*end as usize / 4) {
+                        *word |= bits << (*end % 4 * 8);
+                    }
                 }
                 true
             });
@@ -199,7 +202,7 @@ impl<P: Primitives + ?Sized> Builder<'_, '_, P> {
         append(body, entries, next, narrow);
 
         let offsets = number_words(entries + 1, narrow);
-        let references = number_words(self.references, narrow_references(self.primitives.len() as usize));
+        let references = reference_words(self.references, self.primitives.len() as usize);
         for index in 0..references {
             let word = body.get(cells + 1 + index).copied().unwrap_or(0);
             put(body, offsets + index, word, false);

@@ -1,6 +1,6 @@
-use super::{Grid, cells::Cells};
+use super::{Grid, cells::Cells, met::Met};
 use crate::{
-    accel::{Leaf, Step, Traversal, leaf::References},
+    accel::{Step, Traversal, leaf::References},
     geometry::{Axis, AxisView, Lattice, PreparedRay, beyond, slack},
     math::{greatest, least},
 };
@@ -16,14 +16,15 @@ use crate::{
 pub struct GridTraversal<'a> {
     cells: Cells<'a>,
     references: References<'a>,
+    octants: &'a [u32],
     lattice: Lattice,
     slack: f32,
+    /// No plane crossed at `t` is left behind later than this after it.
+    margin: f32,
     /// Where the ray leaves the bounds.
     exit: f32,
-    /// Where its interval within them begins.
+    /// Where it entered the cell that the last crossing led to.
     enter: f32,
-    /// Where it has left all cells before the one that the last crossing led to.
-    left: f32,
     /// Where the walk is along each axis.
     lines: [Line; 3],
     /// The number of the cell that the last crossing led to.
@@ -42,15 +43,15 @@ pub struct GridTraversal<'a> {
 struct Line {
     /// Where the ray enters the next cell; never if there is none.
     next: f32,
-    /// Where it leaves this cell.
-    exit: f32,
-    /// The number of the cell's far plane, and what is added to come to the next.
+    /// The number of the cell's far plane, and what is added to come to the next: there is one in the middle of each.
     plane: f32,
     turn: f32,
     /// What is added to the number of the cell.
     stride: u32,
     /// Cells behind this one.
     behind: u32,
+    /// The octants in the half of a cell that the ray enters first.
+    near: u32,
 }
 
 /// Cells that are visited at the same crossing: all combinations of going back by up to so many along each axis.
@@ -62,65 +63,68 @@ struct Tie {
     back: [u32; 3],
 }
 
+/// Where the ray enters the half-space behind a plane of a lattice.
+#[inline(always)]
+fn entry((origin, step): (f32, f32), plane: f32, view: &AxisView) -> f32 {
+    (origin + plane * step - view.origin) * view.entry
+}
+
+/// Where it leaves that before the plane.
+#[inline(always)]
+fn exit((origin, step): (f32, f32), plane: f32, view: &AxisView, slack: f32) -> f32 {
+    (origin + plane * step - view.origin) * view.exit + slack
+}
+
 impl Line {
     /// No cells.
-    const NOWHERE: Self = Self { next: f32::INFINITY, exit: 0.0, plane: 0.0, turn: 0.0, stride: 0, behind: 0 };
-
-    /// Where the ray enters the half-space behind a plane, and where it leaves that before it.
-    #[inline(always)]
-    fn cross(plane: f32, (origin, step): (f32, f32), view: &AxisView, slack: f32) -> (f32, f32) {
-        let distance = origin + plane * step - view.origin;
-        (distance * view.entry, distance * view.exit + slack)
-    }
+    const NOWHERE: Self = Self { next: f32::INFINITY, plane: 0.0, turn: 0.0, stride: 0, behind: 0, near: 0 };
 
     /// To the next cell, of which there is one.
     #[inline(always)]
-    fn forward(&mut self, planes: (f32, f32), view: &AxisView, slack: f32) {
-        self.behind -= 1;
+    fn forward(&mut self, planes: (f32, f32), view: &AxisView) {
+        self.behind = self.behind.wrapping_sub(1);
         self.plane += self.turn;
-        (self.next, self.exit) = Self::cross(self.plane, planes, view, slack);
+        self.next = entry(planes, self.plane, view);
         if self.behind == 0 {
             self.next = f32::INFINITY;
         }
     }
 
-    /// Goes to the last cell along an axis that the ray enters up to `enter`: its number, and where the ray leaves the
-    /// cell before.
-    fn find(
-        &mut self,
-        lattice: &Lattice,
-        axis: Axis,
-        stride: u32,
-        enter: f32,
-        ray: &PreparedRay,
-        slack: f32,
-    ) -> (u32, f32) {
+    /// Where the ray enters the far half of the cell.
+    #[inline(always)]
+    fn middle(&self, planes: (f32, f32), view: &AxisView) -> f32 {
+        entry(planes, self.plane - 0.5 * self.turn, view)
+    }
+
+    /// Goes to the last cell along an axis that the ray enters up to `enter`; its number.
+    #[inline(always)]
+    fn find(&mut self, lattice: &Lattice, axis: Axis, stride: u32, enter: f32, ray: &PreparedRay) -> u32 {
         let view = &ray.views[axis as usize];
-        let (planes, count) = (lattice.along(axis as u32), lattice.last(axis));
+        let (planes, count) = (lattice.along(axis as u32), lattice.last(axis) / 2);
         let (origin, step) = planes;
         // Where it should be; roundings do not matter.
         let point = axis.of(ray.ray().origin) + enter * axis.of(ray.ray().direction);
-        let guess = (((point - origin) / step) as u32).min(count.saturating_sub(1));
-        let (plane, turn, stride, behind) = if view.ascends() {
-            (guess, 1.0, stride, count - guess)
-        } else {
-            (guess + 1, -1.0, stride.wrapping_neg(), guess + 1)
-        };
+        let guess = (((point - origin) / (step * 2.0)) as u32).min(count.saturating_sub(1));
+        let lower = [0x0f, 0x33, 0x55][axis as usize];
         // On the near plane, before the cell.
-        *self = Self { next: 0.0, exit: 0.0, plane: plane as i32 as f32, turn, stride, behind };
-        (self.next, self.exit) = Self::cross(self.plane, planes, view, slack);
+        *self = if view.ascends() {
+            let plane = (guess * 2) as i32 as f32;
+            Self { next: 0.0, plane, turn: 2.0, stride, behind: count - guess, near: lower }
+        } else {
+            let plane = (guess * 2 + 2) as i32 as f32;
+            let stride = stride.wrapping_neg();
+            Self { next: 0.0, plane, turn: -2.0, stride, behind: guess + 1, near: 0xff ^ lower }
+        };
+        self.next = entry(planes, self.plane, view);
         while self.behind < count && self.next > enter {
             self.behind += 1;
-            self.plane -= turn;
-            (self.next, self.exit) = Self::cross(self.plane, planes, view, slack);
+            self.plane -= self.turn;
+            self.next = entry(planes, self.plane, view);
         }
         loop {
-            // Written so that NaN, the ray in the plane, is never left and goes on.
-            let left = if self.exit < f32::INFINITY { self.exit } else { f32::INFINITY };
-            let left = if self.behind == count { f32::NEG_INFINITY } else { left };
-            self.forward(planes, view, slack);
+            self.forward(planes, view);
             if self.behind == 0 || self.next > enter {
-                return (if turn > 0.0 { count - 1 - self.behind } else { self.behind }, left);
+                return if self.turn > 0.0 { count - 1 - self.behind } else { self.behind };
             }
         }
     }
@@ -128,9 +132,9 @@ impl Line {
     /// How many cells back the ray has not left at `t`.
     fn back(&self, t: f32, lattice: &Lattice, axis: Axis, ray: &PreparedRay, slack: f32) -> u32 {
         let (planes, view) = (lattice.along(axis as u32), &ray.views[axis as usize]);
-        let before = lattice.last(axis) - 1 - self.behind;
+        let before = (lattice.last(axis) / 2).wrapping_sub(1).wrapping_sub(self.behind);
         let (mut back, mut plane) = (0, self.plane - self.turn);
-        while back < before && !(Self::cross(plane, planes, view, slack).1 < t) {
+        while back < before && !(exit(planes, plane, view, slack) < t) {
             back += 1;
             plane -= self.turn;
         }
@@ -146,11 +150,12 @@ impl<'a> GridTraversal<'a> {
         let mut traversal = Self {
             cells: grid.cells,
             references: grid.references,
+            octants: grid.octants,
             lattice: grid.lattice,
             slack: 0.0,
+            margin: 0.0,
             enter: 0.0,
             exit: 0.0,
-            left: f32::NEG_INFINITY,
             lines: [Line::NOWHERE; 3],
             at: 0,
             begins: false,
@@ -171,29 +176,42 @@ impl<'a> GridTraversal<'a> {
     fn begin(&mut self, ray: &PreparedRay) {
         (self.begins, self.is_new) = (false, true);
         (self.slack, self.at) = (slack(self.enter), 0);
+        // Twice the widening of exits.
+        let farthest = greatest(self.enter.abs(), self.exit.abs());
+        self.margin = farthest * (1.0 / 32768.0) + 2.0 * self.slack;
+        let mut is_tied = false;
         let mut stride = 1;
         for axis in [Axis::Z, Axis::Y, Axis::X] {
             let line = &mut self.lines[axis as usize];
-            let (number, left) = line.find(&self.lattice, axis, stride, self.enter, ray, self.slack);
-            self.left = greatest(left, self.left);
+            let number = line.find(&self.lattice, axis, stride, self.enter, ray);
             self.at = self.at.wrapping_add(number.wrapping_mul(stride));
-            stride = stride.wrapping_mul(self.lattice.last(axis));
+            let count = self.lattice.last(axis) / 2;
+            stride = stride.wrapping_mul(count);
+
+            let view = &ray.views[axis as usize];
+            let left = exit(self.lattice.along(axis as u32), line.plane - line.turn, view, self.slack);
+            // Written so that NaN, the ray in the plane, is never left.
+            is_tied |= line.behind + 1 < count && !(left < self.enter);
+            // A ray along the planes has left one behind or will never. Other exits that are no numbers are too late.
+            if !(view.exit.abs() < f32::INFINITY) && !(left < f32::MIN && view.entry.abs() > f32::MAX) {
+                self.margin = f32::INFINITY;
+            }
         }
-        if !(self.left < self.enter) {
-            self.tie(ray, self.enter, None);
+        if is_tied {
+            self.tie(self.lines, ray, self.enter, None);
         }
     }
 
     /// Notes the cells that the ray has not left at `t`, when it crosses a plane of the axis given.
     #[inline(never)]
-    fn tie(&mut self, ray: &PreparedRay, t: f32, crossed: Option<usize>) {
+    fn tie(&mut self, lines: [Line; 3], ray: &PreparedRay, t: f32, crossed: Option<usize>) {
         self.tie = Tie::default();
-        for ((axis, most), line) in Axis::ALL.into_iter().zip(&mut self.tie.most).zip(&self.lines) {
+        for ((axis, most), line) in Axis::ALL.into_iter().zip(&mut self.tie.most).zip(&lines) {
             if Some(axis as usize) != crossed {
                 *most = line.back(t, &self.lattice, axis, ray, self.slack);
             }
         }
-        self.is_tied = true;
+        self.is_tied = self.tie.most != [0; 3];
     }
 
     /// Goes to the next cell of the same crossing, if there is one.
@@ -210,53 +228,81 @@ impl<'a> GridTraversal<'a> {
         false
     }
 
-    /// The number of the cell at hand.
-    #[inline(always)]
-    fn cell(&self) -> u32 {
-        if !self.is_tied {
-            return self.at;
-        }
-        let places = self.lines.iter().zip(self.tie.back);
-        places.fold(self.at, |at, (line, back)| at.wrapping_sub(line.stride.wrapping_mul(back)))
+    /// The number of the cell at hand, at a tie.
+    #[inline(never)]
+    fn tied_cell(&self, at: u32, lines: [Line; 3]) -> u32 {
+        let places = lines.iter().zip(self.tie.back);
+        places.fold(at, |at, (line, back)| at.wrapping_sub(line.stride.wrapping_mul(back)))
     }
 
-    /// The axis along which to go on where no plane is crossed at a time that is a number.
-    #[inline(never)]
-    fn any_axis(&self) -> Option<usize> {
-        self.lines.iter().position(|line| line.behind > 0)
+    /// The octants of the cell at hand whose three intervals have a point in common with each other and with the ray's,
+    /// and perhaps more.
+    #[inline(always)]
+    fn octants(&self, [x, y, z]: [&Line; 3], ray: &PreparedRay, enter: f32, limit: f32) -> u32 {
+        let margin = self.margin;
+        let exit = least(least(least(x.next, y.next), z.next), limit) + margin;
+        let middle = |axis: Axis, line: &Line| {
+            let entry = line.middle(self.lattice.along(axis as u32), &ray.views[axis as usize]);
+            (entry, entry + margin, line.near)
+        };
+        let (x, y, z) = (middle(Axis::X, x), middle(Axis::Y, y), middle(Axis::Z, z));
+        let mut octants = 0xff;
+        // Each is left out for a reason; NaN is none.
+        for (entry, left, near) in [x, y, z] {
+            if left < enter {
+                octants &= !near;
+            }
+            if entry > exit {
+                octants &= near;
+            }
+        }
+        for ((a_entry, a_left, a_near), (b_entry, b_left, b_near)) in [(x, y), (y, z), (z, x)] {
+            if a_entry > b_left {
+                octants &= !(b_near & !a_near);
+            }
+            if b_entry > a_left {
+                octants &= !(a_near & !b_near);
+            }
+        }
+        octants
     }
 
     /// On to the next cell that holds primitives.
     #[inline(always)]
-    fn advance<const BOUNDED: bool>(&mut self, ray: &PreparedRay, t_max: f32, budget: &mut u32) -> Step<Leaf<'a>> {
-        let limit = least(beyond(t_max), self.exit);
-        let finite = least(limit, f32::MAX);
+    fn advance<const BOUNDED: bool>(&mut self, ray: &PreparedRay, t_max: f32, budget: &mut u32) -> Step<Met<'a>> {
         if self.begins {
             self.begin(ray);
         }
-        let (slack, mut at, mut left) = (self.slack, self.at, self.left);
-        let mut is_new = self.is_new;
-        loop {
+        let limit = least(beyond(t_max), self.exit);
+        let finite = least(limit, f32::MAX);
+        let [mut x, mut y, mut z] = self.lines;
+        let (margin, mut at, mut enter) = (self.margin, self.at, self.enter);
+        let [x_planes, y_planes, z_planes] = [0, 1, 2].map(|axis| self.lattice.along(axis));
+        let [x_view, y_view, z_view, _] = &ray.views;
+        let (mut is_new, mut is_tied) = (self.is_new, self.is_tied);
+        let step = loop {
             if is_new {
                 if BOUNDED {
                     if *budget == 0 {
-                        (self.at, self.left, self.is_new) = (at, left, true);
-                        return Step::Paused;
+                        break Step::Paused;
                     }
                     *budget -= 1;
                 }
-                let cell = if self.is_tied { self.cell() } else { at };
+                let cell = if is_tied { self.tied_cell(at, [x, y, z]) } else { at };
                 if let Some((first, count)) = self.cells.of(cell) {
-                    (self.at, self.left, self.is_new) = (at, left, false);
-                    return Step::Leaf(Leaf::of(self.references, first, count));
+                    is_new = false;
+                    let octants = if is_tied { 0xff } else { self.octants([&x, &y, &z], ray, enter, limit) };
+                    break Step::Leaf(Met::of(self.references, self.octants, first, count, octants));
                 }
             }
             is_new = true;
-            if self.is_tied && self.next_tied() {
-                continue;
+            if is_tied {
+                is_tied = self.next_tied();
+                if is_tied {
+                    continue;
+                }
             }
             // Across the nearest plane.
-            let [x, y, z] = &self.lines;
             let (mut axis, mut t) = (0, x.next);
             if y.next < t {
                 (axis, t) = (1, y.next);
@@ -265,39 +311,53 @@ impl<'a> GridTraversal<'a> {
                 (axis, t) = (2, z.next);
             }
             if t > finite {
-                match self.any_axis() {
+                // The axis along which to go on where no plane is crossed at a time that is a number.
+                match [x.behind, y.behind, z.behind].iter().position(|&behind| behind > 0) {
                     Some(other) if !(t > limit) => axis = other,
                     _ => {
-                        (self.at, self.left, self.is_new) = (at, left, false);
-                        return Step::Done;
+                        is_new = false;
+                        break Step::Done;
                     }
                 }
             }
-            let Some(line) = self.lines.get_mut(axis) else { return Step::Done };
-            let exit = line.exit;
-            line.forward(self.lattice.along(axis as u32), &ray.views[axis & 3], slack);
-            at = at.wrapping_add(line.stride);
-            // Written so that NaN, the ray in a plane, is a tie.
-            if !(left < t) {
-                self.at = at;
-                self.tie(ray, t, Some(axis));
+            match axis {
+                0 => {
+                    x.forward(x_planes, x_view);
+                    at = at.wrapping_add(x.stride);
+                }
+                1 => {
+                    y.forward(y_planes, y_view);
+                    at = at.wrapping_add(y.stride);
+                }
+                _ => {
+                    z.forward(z_planes, z_view);
+                    at = at.wrapping_add(z.stride);
+                }
             }
-            left = greatest(exit, left);
-        }
+            // Written so that NaN, the ray in a plane, is a tie.
+            if !(enter + margin < t) {
+                self.tie([x, y, z], ray, t, Some(axis));
+                is_tied = self.is_tied;
+            }
+            enter = t;
+        };
+        (self.lines, self.at, self.enter) = ([x, y, z], at, enter);
+        (self.is_new, self.is_tied) = (is_new, is_tied);
+        step
     }
 }
 
 impl<'a> Traversal for GridTraversal<'a> {
-    type Leaf = Leaf<'a>;
+    type Leaf = Met<'a>;
 
-    fn next_leaf(&mut self, ray: &PreparedRay, t_max: f32) -> Option<Leaf<'a>> {
+    fn next_leaf(&mut self, ray: &PreparedRay, t_max: f32) -> Option<Met<'a>> {
         match self.advance::<false>(ray, t_max, &mut 0) {
             Step::Leaf(leaf) => Some(leaf),
             Step::Paused | Step::Done => None,
         }
     }
 
-    fn step(&mut self, ray: &PreparedRay, t_max: f32, budget: &mut u32) -> Step<Leaf<'a>> {
+    fn step(&mut self, ray: &PreparedRay, t_max: f32, budget: &mut u32) -> Step<Met<'a>> {
         self.advance::<true>(ray, t_max, budget)
     }
 }
