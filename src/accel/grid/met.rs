@@ -12,16 +12,32 @@ pub struct Met<'a> {
 }
 
 impl<'a> Met<'a> {
-    /// `count` references from the one at `first`, as far as they share a bit with `on_the_way`.
+    /// Those of `count` references from the one at `first` that share a bit with `on_the_way`, if there are any.
     #[inline(always)]
-    pub(super) const fn of(
+    pub(super) fn of(
         references: References<'a>,
         octants: &'a [u32],
         first: u32,
         count: u32,
         on_the_way: u32,
-    ) -> Self {
-        Self { next: first, end: first.saturating_add(count), references, octants, on_the_way }
+    ) -> Option<Self> {
+        let mut met = Self { next: first, end: first.saturating_add(count), references, octants, on_the_way };
+        met.next = met.ahead()?;
+        Some(met)
+    }
+
+    /// The next reference, if there is one.
+    #[inline(always)]
+    fn ahead(&self) -> Option<u32> {
+        let octants = |index: u32| Some(*self.octants.get(index as usize / 4)? >> (index % 4 * 8));
+        let mut next = self.next;
+        while next < self.end {
+            if octants(next)? & self.on_the_way != 0 {
+                return Some(next);
+            }
+            next += 1;
+        }
+        None
     }
 }
 
@@ -30,14 +46,8 @@ impl Iterator for Met<'_> {
 
     #[inline(always)]
     fn next(&mut self) -> Option<u32> {
-        while self.next < self.end {
-            let index = self.next;
-            self.next += 1;
-            let octants = self.octants.get(index as usize / 4).map_or(0, |word| word >> (index % 4 * 8));
-            if octants & self.on_the_way != 0 {
-                return Some(self.references.get(index));
-            }
-        }
-        None
+        let index = self.ahead()?;
+        self.next = index + 1;
+        Some(self.references.get(index))
     }
 }

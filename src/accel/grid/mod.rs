@@ -136,8 +136,8 @@ impl<'a> Accelerator for Grid<'a> {
     }
 
     #[inline]
-    fn traverse(&self, ray: &PreparedRay) -> GridTraversal<'a> {
-        GridTraversal::new(self, ray)
+    fn traverse(&self, _: &PreparedRay) -> GridTraversal<'a> {
+        GridTraversal::new(self)
     }
 }
 

@@ -1,7 +1,7 @@
 use super::{Grid, cells::Cells, met::Met};
 use crate::{
     accel::{Step, Traversal, leaf::References},
-    geometry::{Axis, AxisView, Lattice, PreparedRay, beyond, slack},
+    geometry::{Aabb, Axis, AxisView, Lattice, PreparedRay, beyond, slack},
     math::{greatest, least},
 };
 
@@ -17,16 +17,17 @@ pub struct GridTraversal<'a> {
     cells: Cells<'a>,
     references: References<'a>,
     octants: &'a [u32],
+    bounds: Aabb,
     lattice: Lattice,
-    slack: f32,
+    /// Where the walk is along each axis.
+    lines: [Line; 3],
+    /// Where the ray entered the cell that the last crossing led to.
+    enter: f32,
     /// No plane crossed at `t` is left behind later than this after it.
     margin: f32,
     /// Where the ray leaves the bounds.
     exit: f32,
-    /// Where it entered the cell that the last crossing led to.
-    enter: f32,
-    /// Where the walk is along each axis.
-    lines: [Line; 3],
+    slack: f32,
     /// The number of the cell that the last crossing led to.
     at: u32,
     /// Whether the first cells are still to be found.
@@ -46,12 +47,21 @@ struct Line {
     /// The number of the cell's far plane, and what is added to come to the next: there is one in the middle of each.
     plane: f32,
     turn: f32,
-    /// What is added to the number of the cell.
-    stride: u32,
     /// Cells behind this one.
     behind: u32,
+    /// What is added to the number of the cell.
+    stride: u32,
     /// The octants in the half of a cell that the ray enters first.
     near: u32,
+}
+
+/// The planes of an axis as a ray sees them.
+#[derive(Clone, Copy)]
+struct Planes {
+    /// The first, and the distance from one to the next.
+    first: f32,
+    step: f32,
+    view: AxisView,
 }
 
 /// Cells that are visited at the same crossing: all combinations of going back by up to so many along each axis.
@@ -63,78 +73,93 @@ struct Tie {
     back: [u32; 3],
 }
 
-/// Where the ray enters the half-space behind a plane of a lattice.
-#[inline(always)]
-fn entry((origin, step): (f32, f32), plane: f32, view: &AxisView) -> f32 {
-    (origin + plane * step - view.origin) * view.entry
-}
+impl Planes {
+    #[inline(always)]
+    fn of(lattice: &Lattice, ray: &PreparedRay, axis: usize) -> Self {
+        let (first, step) = lattice.along(axis as u32);
+        Self { first, step, view: ray.views[axis & 3] }
+    }
 
-/// Where it leaves that before the plane.
-#[inline(always)]
-fn exit((origin, step): (f32, f32), plane: f32, view: &AxisView, slack: f32) -> f32 {
-    (origin + plane * step - view.origin) * view.exit + slack
+    /// How far a plane is from the ray's origin.
+    #[inline(always)]
+    fn distance(&self, plane: f32) -> f32 {
+        self.first + plane * self.step - self.view.origin
+    }
+
+    /// Where the ray enters the half-space behind a plane.
+    #[inline(always)]
+    fn entry(&self, plane: f32) -> f32 {
+        self.distance(plane) * self.view.entry
+    }
+
+    /// Where it leaves that before the plane.
+    #[inline(always)]
+    fn exit(&self, plane: f32, slack: f32) -> f32 {
+        self.distance(plane) * self.view.exit + slack
+    }
 }
 
 impl Line {
     /// No cells.
-    const NOWHERE: Self = Self { next: f32::INFINITY, plane: 0.0, turn: 0.0, stride: 0, behind: 0, near: 0 };
+    const NOWHERE: Self = Self { next: 0.0, plane: 0.0, turn: 0.0, behind: 0, stride: 0, near: 0 };
+
+    /// About the last of `count` cells that the ray enters up to where it is at `point`: roundings do not matter.
+    #[inline(always)]
+    fn about(planes: &Planes, count: u32, point: f32, stride: u32, lower: u32) -> Self {
+        let cell = (((point - planes.first) * 0.5 / planes.step) as u32).min(count.wrapping_sub(1));
+        let (plane, turn, stride, behind, near) = if planes.view.ascends() {
+            (cell + 1, 2.0, stride, count.wrapping_sub(1).wrapping_sub(cell), lower)
+        } else {
+            (cell, -2.0, stride.wrapping_neg(), cell, 0xff ^ lower)
+        };
+        let plane = (plane * 2) as i32 as f32;
+        let line = Self { next: 0.0, plane, turn, behind, stride, near };
+        Self { next: line.ahead(planes), ..line }
+    }
+
+    /// To the last cell that the ray enters up to `enter`, from wherever it is.
+    fn settle(&mut self, planes: &Planes, count: u32, enter: f32) {
+        while self.before(count) > 0 && planes.entry(self.plane - self.turn) > enter {
+            self.behind += 1;
+            self.plane -= self.turn;
+        }
+        self.next = self.ahead(planes);
+        // Written so that NaN, the ray in the plane, goes on.
+        while self.behind > 0 && !(self.next > enter) {
+            self.forward(planes);
+        }
+    }
+
+    /// Cells of `count` before this one.
+    #[inline(always)]
+    const fn before(&self, count: u32) -> u32 {
+        count.wrapping_sub(1).wrapping_sub(self.behind)
+    }
+
+    /// The number of this one.
+    #[inline(always)]
+    const fn number(&self, count: u32) -> u32 {
+        if self.turn > 0.0 { self.before(count) } else { self.behind }
+    }
 
     /// To the next cell, of which there is one.
     #[inline(always)]
-    fn forward(&mut self, planes: (f32, f32), view: &AxisView) {
+    fn forward(&mut self, planes: &Planes) {
         self.behind = self.behind.wrapping_sub(1);
         self.plane += self.turn;
-        self.next = entry(planes, self.plane, view);
-        if self.behind == 0 {
-            self.next = f32::INFINITY;
-        }
+        self.next = self.ahead(planes);
     }
 
-    /// Where the ray enters the far half of the cell.
+    /// Where the ray enters the next cell.
     #[inline(always)]
-    fn middle(&self, planes: (f32, f32), view: &AxisView) -> f32 {
-        entry(planes, self.plane - 0.5 * self.turn, view)
-    }
-
-    /// Goes to the last cell along an axis that the ray enters up to `enter`; its number.
-    #[inline(always)]
-    fn find(&mut self, lattice: &Lattice, axis: Axis, stride: u32, enter: f32, ray: &PreparedRay) -> u32 {
-        let view = &ray.views[axis as usize];
-        let (planes, count) = (lattice.along(axis as u32), lattice.last(axis) / 2);
-        let (origin, step) = planes;
-        // Where it should be; roundings do not matter.
-        let point = axis.of(ray.ray().origin) + enter * axis.of(ray.ray().direction);
-        let guess = (((point - origin) / (step * 2.0)) as u32).min(count.saturating_sub(1));
-        let lower = [0x0f, 0x33, 0x55][axis as usize];
-        // On the near plane, before the cell.
-        *self = if view.ascends() {
-            let plane = (guess * 2) as i32 as f32;
-            Self { next: 0.0, plane, turn: 2.0, stride, behind: count - guess, near: lower }
-        } else {
-            let plane = (guess * 2 + 2) as i32 as f32;
-            let stride = stride.wrapping_neg();
-            Self { next: 0.0, plane, turn: -2.0, stride, behind: guess + 1, near: 0xff ^ lower }
-        };
-        self.next = entry(planes, self.plane, view);
-        while self.behind < count && self.next > enter {
-            self.behind += 1;
-            self.plane -= self.turn;
-            self.next = entry(planes, self.plane, view);
-        }
-        loop {
-            self.forward(planes, view);
-            if self.behind == 0 || self.next > enter {
-                return if self.turn > 0.0 { count - 1 - self.behind } else { self.behind };
-            }
-        }
+    fn ahead(&self, planes: &Planes) -> f32 {
+        if self.behind == 0 { f32::INFINITY } else { planes.entry(self.plane) }
     }
 
     /// How many cells back the ray has not left at `t`.
-    fn back(&self, t: f32, lattice: &Lattice, axis: Axis, ray: &PreparedRay, slack: f32) -> u32 {
-        let (planes, view) = (lattice.along(axis as u32), &ray.views[axis as usize]);
-        let before = (lattice.last(axis) / 2).wrapping_sub(1).wrapping_sub(self.behind);
+    fn back(&self, planes: &Planes, count: u32, t: f32, slack: f32) -> u32 {
         let (mut back, mut plane) = (0, self.plane - self.turn);
-        while back < before && !(exit(planes, plane, view, slack) < t) {
+        while back < self.before(count) && !(planes.exit(plane, slack) < t) {
             back += 1;
             plane -= self.turn;
         }
@@ -144,71 +169,99 @@ impl Line {
 
 impl<'a> GridTraversal<'a> {
     /// The walk along `ray`, before its beginning.
-    #[inline]
-    pub(super) fn new(grid: &Grid<'a>, ray: &PreparedRay) -> Self {
+    #[inline(always)]
+    pub(super) fn new(grid: &Grid<'a>) -> Self {
         // The first cells are found where this is when it is walked: it need not be moved then.
-        let mut traversal = Self {
+        Self {
             cells: grid.cells,
             references: grid.references,
             octants: grid.octants,
+            bounds: grid.bounds,
             lattice: grid.lattice,
-            slack: 0.0,
-            margin: 0.0,
-            enter: 0.0,
-            exit: 0.0,
             lines: [Line::NOWHERE; 3],
+            enter: 0.0,
+            margin: 0.0,
+            exit: f32::NEG_INFINITY,
+            slack: 0.0,
             at: 0,
-            begins: false,
+            begins: grid.primitives > 0,
             is_new: false,
             is_tied: false,
             tie: Tie { most: [0; 3], back: [0; 3] },
-        };
-        if let Some((enter, exit)) = grid.bounds.interval(ray) {
-            traversal.enter = greatest(enter, ray.ray().t_min);
-            traversal.exit = least(exit, beyond(ray.ray().t_max));
-            traversal.begins = grid.primitives > 0 && !(traversal.enter > traversal.exit);
         }
-        traversal
     }
 
-    /// Finds the first cells.
+    /// How many cells there are along an axis.
+    #[inline(always)]
+    const fn count(&self, axis: Axis) -> u32 {
+        self.lattice.last(axis) / 2
+    }
+
+    /// Finds the first cells, if there are any.
     #[inline(never)]
     fn begin(&mut self, ray: &PreparedRay) {
-        (self.begins, self.is_new) = (false, true);
-        (self.slack, self.at) = (slack(self.enter), 0);
+        self.begins = false;
+        let Some((enter, exit)) = self.bounds.interval(ray) else { return };
+        let enter = greatest(enter, ray.ray().t_min);
+        let exit = least(exit, beyond(ray.ray().t_max));
+        if enter > exit {
+            return;
+        }
+        let slack = slack(enter);
+        (self.enter, self.exit, self.slack, self.is_new) = (enter, exit, slack, true);
         // Twice the widening of exits.
-        let farthest = greatest(self.enter.abs(), self.exit.abs());
-        self.margin = farthest * (1.0 / 32768.0) + 2.0 * self.slack;
-        let mut is_tied = false;
-        let mut stride = 1;
-        for axis in [Axis::Z, Axis::Y, Axis::X] {
-            let line = &mut self.lines[axis as usize];
-            let number = line.find(&self.lattice, axis, stride, self.enter, ray);
-            self.at = self.at.wrapping_add(number.wrapping_mul(stride));
-            let count = self.lattice.last(axis) / 2;
+        self.margin = greatest(enter.abs(), exit.abs()) * (1.0 / 32768.0) + 2.0 * slack;
+        let (mut at, mut stride, mut is_odd) = (0_u32, 1_u32, false);
+        for (axis, lower) in [(Axis::Z, 0x55), (Axis::Y, 0x33), (Axis::X, 0x0f)] {
+            let planes = Planes::of(&self.lattice, ray, axis as usize);
+            let count = self.count(axis);
+            let point = planes.view.origin + enter * axis.of(ray.ray().direction);
+            let line = Line::about(&planes, count, point, stride, lower);
+            at = at.wrapping_add(line.number(count).wrapping_mul(stride));
             stride = stride.wrapping_mul(count);
+            self.lines[axis as usize] = line;
+            // Written so that NaN is odd.
+            let near = line.plane - line.turn;
+            let is_off = planes.entry(near) > enter || !(line.next > enter);
+            let is_tied = line.before(count) > 0 && !(planes.exit(near, slack) < enter);
+            is_odd |= is_off | is_tied | !(planes.view.exit.abs() < f32::INFINITY);
+        }
+        self.at = at;
+        if is_odd {
+            self.begin_oddly(ray);
+        }
+    }
 
-            let view = &ray.views[axis as usize];
-            let left = exit(self.lattice.along(axis as u32), line.plane - line.turn, view, self.slack);
-            // Written so that NaN, the ray in the plane, is never left.
-            is_tied |= line.behind + 1 < count && !(left < self.enter);
-            // A ray along the planes has left one behind or will never. Other exits that are no numbers are too late.
-            if !(view.exit.abs() < f32::INFINITY) && !(left < f32::MIN && view.entry.abs() > f32::MAX) {
+    /// Finds the first cell where roundings did matter, more than one if the ray has not left those before, and whether
+    /// an exit is no number.
+    #[inline(never)]
+    fn begin_oddly(&mut self, ray: &PreparedRay) {
+        let mut number = 0_u32;
+        for axis in Axis::ALL {
+            let (planes, count) = (Planes::of(&self.lattice, ray, axis as usize), self.count(axis));
+            let line = &mut self.lines[axis as usize];
+            line.settle(&planes, count, self.enter);
+            number = number.wrapping_mul(count).wrapping_add(line.number(count));
+            // A ray along the planes has left one behind or never will. Other exits that are no numbers are too late.
+            let AxisView { entry, exit, .. } = planes.view;
+            let is_past = planes.exit(line.plane - line.turn, self.slack) < f32::MIN && entry.abs() > f32::MAX;
+            if !(exit.abs() < f32::INFINITY || is_past) {
                 self.margin = f32::INFINITY;
             }
         }
-        if is_tied {
-            self.tie(self.lines, ray, self.enter, None);
-        }
+        self.at = number;
+        self.tie(ray, self.enter, None);
     }
 
     /// Notes the cells that the ray has not left at `t`, when it crosses a plane of the axis given.
     #[inline(never)]
-    fn tie(&mut self, lines: [Line; 3], ray: &PreparedRay, t: f32, crossed: Option<usize>) {
+    fn tie(&mut self, ray: &PreparedRay, t: f32, crossed: Option<usize>) {
         self.tie = Tie::default();
-        for ((axis, most), line) in Axis::ALL.into_iter().zip(&mut self.tie.most).zip(&lines) {
+        for axis in Axis::ALL {
             if Some(axis as usize) != crossed {
-                *most = line.back(t, &self.lattice, axis, ray, self.slack);
+                let planes = Planes::of(&self.lattice, ray, axis as usize);
+                let line = &self.lines[axis as usize];
+                self.tie.most[axis as usize] = line.back(&planes, self.count(axis), t, self.slack);
             }
         }
         self.is_tied = self.tie.most != [0; 3];
@@ -228,34 +281,33 @@ impl<'a> GridTraversal<'a> {
         false
     }
 
-    /// The number of the cell at hand, at a tie.
+    /// The number of the cell at hand.
     #[inline(never)]
-    fn tied_cell(&self, at: u32, lines: [Line; 3]) -> u32 {
-        let places = lines.iter().zip(self.tie.back);
+    fn tied_cell(&self, at: u32) -> u32 {
+        let places = self.lines.iter().zip(self.tie.back);
         places.fold(at, |at, (line, back)| at.wrapping_sub(line.stride.wrapping_mul(back)))
     }
 
     /// The octants of the cell at hand whose three intervals have a point in common with each other and with the ray's,
     /// and perhaps more.
     #[inline(always)]
-    fn octants(&self, [x, y, z]: [&Line; 3], ray: &PreparedRay, enter: f32, limit: f32) -> u32 {
+    fn on_the_way(&self, ray: &PreparedRay, enter: f32, limit: f32) -> u32 {
         let margin = self.margin;
+        let [x, y, z] = &self.lines;
         let exit = least(least(least(x.next, y.next), z.next), limit) + margin;
-        let middle = |axis: Axis, line: &Line| {
-            let entry = line.middle(self.lattice.along(axis as u32), &ray.views[axis as usize]);
-            (entry, entry + margin, line.near)
-        };
-        let (x, y, z) = (middle(Axis::X, x), middle(Axis::Y, y), middle(Axis::Z, z));
         let mut octants = 0xff;
         // Each is left out for a reason; NaN is none.
-        for (entry, left, near) in [x, y, z] {
+        let [x, y, z] = [(0, x), (1, y), (2, z)].map(|(axis, line)| {
+            let entry = Planes::of(&self.lattice, ray, axis).entry(line.plane - 0.5 * line.turn);
+            let left = entry + margin;
             if left < enter {
-                octants &= !near;
+                octants &= !line.near;
             }
             if entry > exit {
-                octants &= near;
+                octants &= line.near;
             }
-        }
+            (entry, left, line.near)
+        });
         for ((a_entry, a_left, a_near), (b_entry, b_left, b_near)) in [(x, y), (y, z), (z, x)] {
             if a_entry > b_left {
                 octants &= !(b_near & !a_near);
@@ -267,7 +319,15 @@ impl<'a> GridTraversal<'a> {
         octants
     }
 
-    /// On to the next cell that holds primitives.
+    /// The primitives of a cell that the ray may meet, if there are any.
+    #[inline(always)]
+    fn met(&self, cell: u32, ray: &PreparedRay, enter: f32, limit: f32) -> Option<Met<'a>> {
+        let (first, count) = self.cells.of(cell)?;
+        let octants = if self.is_tied { 0xff } else { self.on_the_way(ray, enter, limit) };
+        Met::of(self.references, self.octants, first, count, octants)
+    }
+
+    /// On to the next cell that holds primitives on the ray's way.
     #[inline(always)]
     fn advance<const BOUNDED: bool>(&mut self, ray: &PreparedRay, t_max: f32, budget: &mut u32) -> Step<Met<'a>> {
         if self.begins {
@@ -275,11 +335,7 @@ impl<'a> GridTraversal<'a> {
         }
         let limit = least(beyond(t_max), self.exit);
         let finite = least(limit, f32::MAX);
-        let [mut x, mut y, mut z] = self.lines;
-        let (margin, mut at, mut enter) = (self.margin, self.at, self.enter);
-        let [x_planes, y_planes, z_planes] = [0, 1, 2].map(|axis| self.lattice.along(axis));
-        let [x_view, y_view, z_view, _] = &ray.views;
-        let (mut is_new, mut is_tied) = (self.is_new, self.is_tied);
+        let (mut at, mut enter, mut is_new) = (self.at, self.enter, self.is_new);
         let step = loop {
             if is_new {
                 if BOUNDED {
@@ -288,21 +344,18 @@ impl<'a> GridTraversal<'a> {
                     }
                     *budget -= 1;
                 }
-                let cell = if is_tied { self.tied_cell(at, [x, y, z]) } else { at };
-                if let Some((first, count)) = self.cells.of(cell) {
+                let cell = if self.is_tied { self.tied_cell(at) } else { at };
+                if let Some(met) = self.met(cell, ray, enter, limit) {
                     is_new = false;
-                    let octants = if is_tied { 0xff } else { self.octants([&x, &y, &z], ray, enter, limit) };
-                    break Step::Leaf(Met::of(self.references, self.octants, first, count, octants));
+                    break Step::Leaf(met);
                 }
             }
             is_new = true;
-            if is_tied {
-                is_tied = self.next_tied();
-                if is_tied {
-                    continue;
-                }
+            if self.is_tied && self.next_tied() {
+                continue;
             }
             // Across the nearest plane.
+            let [x, y, z] = &self.lines;
             let (mut axis, mut t) = (0, x.next);
             if y.next < t {
                 (axis, t) = (1, y.next);
@@ -311,8 +364,8 @@ impl<'a> GridTraversal<'a> {
                 (axis, t) = (2, z.next);
             }
             if t > finite {
-                // The axis along which to go on where no plane is crossed at a time that is a number.
-                match [x.behind, y.behind, z.behind].iter().position(|&behind| behind > 0) {
+                // All at infinity.
+                match self.lines.iter().position(|line| line.behind > 0) {
                     Some(other) if !(t > limit) => axis = other,
                     _ => {
                         is_new = false;
@@ -320,29 +373,15 @@ impl<'a> GridTraversal<'a> {
                     }
                 }
             }
-            match axis {
-                0 => {
-                    x.forward(x_planes, x_view);
-                    at = at.wrapping_add(x.stride);
-                }
-                1 => {
-                    y.forward(y_planes, y_view);
-                    at = at.wrapping_add(y.stride);
-                }
-                _ => {
-                    z.forward(z_planes, z_view);
-                    at = at.wrapping_add(z.stride);
-                }
-            }
-            // Written so that NaN, the ray in a plane, is a tie.
-            if !(enter + margin < t) {
-                self.tie([x, y, z], ray, t, Some(axis));
-                is_tied = self.is_tied;
+            let Some(line) = self.lines.get_mut(axis) else { break Step::Done };
+            line.forward(&Planes::of(&self.lattice, ray, axis));
+            at = at.wrapping_add(line.stride);
+            if !(enter + self.margin < t) {
+                self.tie(ray, t, Some(axis));
             }
             enter = t;
         };
-        (self.lines, self.at, self.enter) = ([x, y, z], at, enter);
-        (self.is_new, self.is_tied) = (is_new, is_tied);
+        (self.at, self.enter, self.is_new) = (at, enter, is_new);
         step
     }
 }
