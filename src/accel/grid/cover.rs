@@ -47,6 +47,14 @@ impl Frame {
         bounds.split(axis, low).1.split(axis, high).0
     }
 
+    /// About how many cells a primitive with these bounds is in: all of them or, if it is cut, as many as half a diagonal
+    /// plane would be.
+    pub(super) fn estimate(&self, bounds: &Aabb, clip: bool) -> usize {
+        let [x, y, z] = Axis::ALL.map(|axis| cells(&self.range(axis, bounds)).len());
+        let all = x.saturating_mul(y).saturating_mul(z);
+        if clip { all.min((x * y + y * z + z * x) / 2 + 1) } else { all }
+    }
+
     /// Gives all cells that a primitive is in to `visit`, with a bit per octant that it is in, until it returns false;
     /// whether it never did.
     ///

@@ -224,7 +224,7 @@ impl<'a> GridTraversal<'a> {
             let near = line.plane - line.turn;
             let is_off = planes.entry(near) > enter || !(line.next > enter);
             let is_tied = line.before(count) > 0 && !(planes.exit(near, slack) < enter);
-            is_odd |= is_off | is_tied | !(planes.view.exit.abs() < f32::INFINITY);
+            is_odd |= is_off || is_tied || !(planes.view.exit.abs() < f32::INFINITY);
         }
         self.at = at;
         if is_odd {
@@ -327,6 +327,15 @@ impl<'a> GridTraversal<'a> {
         Met::of(self.references, self.octants, first, count, octants)
     }
 
+    /// Crosses the next plane of an axis; what is added to the number of the cell.
+    #[inline(always)]
+    fn cross(&mut self, ray: &PreparedRay, axis: usize) -> u32 {
+        let planes = Planes::of(&self.lattice, ray, axis);
+        let Some(line) = self.lines.get_mut(axis) else { return 0 };
+        line.forward(&planes);
+        line.stride
+    }
+
     /// On to the next cell that holds primitives on the ray's way.
     #[inline(always)]
     fn advance<const BOUNDED: bool>(&mut self, ray: &PreparedRay, t_max: f32, budget: &mut u32) -> Step<Met<'a>> {
@@ -335,6 +344,7 @@ impl<'a> GridTraversal<'a> {
         }
         let limit = least(beyond(t_max), self.exit);
         let finite = least(limit, f32::MAX);
+        let margin = self.margin;
         let (mut at, mut enter, mut is_new) = (self.at, self.enter, self.is_new);
         let step = loop {
             if is_new {
@@ -356,13 +366,11 @@ impl<'a> GridTraversal<'a> {
             }
             // Across the nearest plane.
             let [x, y, z] = &self.lines;
-            let (mut axis, mut t) = (0, x.next);
-            if y.next < t {
-                (axis, t) = (1, y.next);
-            }
-            if z.next < t {
-                (axis, t) = (2, z.next);
-            }
+            let is_y = y.next < x.next;
+            let t = if is_y { y.next } else { x.next };
+            let is_z = z.next < t;
+            let t = if is_z { z.next } else { t };
+            let mut axis = if is_z { 2 } else { usize::from(is_y) };
             if t > finite {
                 // All at infinity.
                 match self.lines.iter().position(|line| line.behind > 0) {
@@ -373,10 +381,12 @@ impl<'a> GridTraversal<'a> {
                     }
                 }
             }
-            let Some(line) = self.lines.get_mut(axis) else { break Step::Done };
-            line.forward(&Planes::of(&self.lattice, ray, axis));
-            at = at.wrapping_add(line.stride);
-            if !(enter + self.margin < t) {
+            at = at.wrapping_add(match axis {
+                0 => self.cross(ray, 0),
+                1 => self.cross(ray, 1),
+                _ => self.cross(ray, 2),
+            });
+            if !(enter + margin < t) {
                 self.tie(ray, t, Some(axis));
             }
             enter = t;
