@@ -74,6 +74,9 @@ impl Frame {
         // Along one axis alone, or in one half, there is nothing to cut off.
         let manifold = |a: &Range<u32>, b: &Range<u32>| a.len() > 1 && b.len() > 1;
         let cut_slabs = clip && (manifold(&xs, &whole.ys) || manifold(&xs, &whole.zs));
+        if !(cut_slabs || clip && manifold(&whole.ys, &whole.zs)) {
+            return self.fill([&xs, &whole.ys, &whole.zs], visit);
+        }
         for x in cells(&xs) {
             let parts = halves(x).map(|x| match xs.contains(&x) {
                 true if cut_slabs => {
@@ -110,6 +113,31 @@ impl Frame {
         }
         true
     }
+
+    /// Gives all cells of a block to `visit`.
+    #[inline(always)]
+    fn fill(&self, [xs, ys, zs]: [&Range<u32>; 3], mut visit: impl FnMut(u32, u32) -> bool) -> bool {
+        for x in cells(xs) {
+            let of_x = within(x, xs, 0x0f);
+            for y in cells(ys) {
+                let of_y = of_x & within(y, ys, 0x33);
+                for z in cells(zs) {
+                    if !visit(index(self.resolution, [x, y, z]), of_y & within(z, zs, 0x55)) {
+                        return false;
+                    }
+                }
+            }
+        }
+        true
+    }
+}
+
+/// The octants of a cell that is in a range of halves, if those in its lower half are `lower`.
+#[inline(always)]
+fn within(cell: u32, range: &Range<u32>, lower: u32) -> u32 {
+    let first = if range.start > cell * 2 { 0 } else { lower };
+    let second = if range.end < cell * 2 + 2 { 0 } else { 0xff ^ lower };
+    first | second
 }
 
 /// The numbers of the two halves of a cell.
