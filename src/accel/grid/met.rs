@@ -6,17 +6,20 @@ pub struct Met<'a> {
     next: u32,
     end: u32,
     references: References<'a>,
-    octants: &'a [u32],
+    octants: &'a [u8],
     /// A bit per octant that the ray meets.
     on_the_way: u32,
 }
+
+/// What turns around the bytes of a word where its upper ones come first in memory.
+const FOURTH_FIRST: u32 = if cfg!(target_endian = "big") { 3 } else { 0 };
 
 impl<'a> Met<'a> {
     /// Those of `count` references from the one at `first` that share a bit with `on_the_way`, if there are any.
     #[inline(always)]
     pub(super) fn of(
         references: References<'a>,
-        octants: &'a [u32],
+        octants: &'a [u8],
         first: u32,
         count: u32,
         on_the_way: u32,
@@ -29,10 +32,9 @@ impl<'a> Met<'a> {
     /// The next reference, if there is one.
     #[inline(always)]
     fn ahead(&self) -> Option<u32> {
-        let octants = |index: u32| Some(*self.octants.get(index as usize / 4)? >> (index % 4 * 8));
         let mut next = self.next;
         while next < self.end {
-            if octants(next)? & self.on_the_way != 0 {
+            if u32::from(*self.octants.get((next ^ FOURTH_FIRST) as usize)?) & self.on_the_way != 0 {
                 return Some(next);
             }
             next += 1;

@@ -55,7 +55,7 @@ pub struct Grid<'a> {
     cells: Cells<'a>,
     references: References<'a>,
     /// A byte per reference: in which octants of the cell the primitive is. Along x it counts 4, along y 2, along z 1.
-    octants: &'a [u32],
+    octants: &'a [u8],
     reference_count: u32,
     primitives: u32,
     resolution: [u32; 3],

@@ -134,7 +134,7 @@ impl<'a> Grid<'a> {
             words,
             cells: Cells { blocks, offsets },
             references: if narrow { References::narrow(references) } else { References::wide(references) },
-            octants,
+            octants: bytemuck::try_cast_slice(octants).ok()?,
             reference_count: header.references,
             primitives: header.primitives,
             resolution: header.resolution,

@@ -16,7 +16,7 @@ use crate::{
 pub struct GridTraversal<'a> {
     cells: Cells<'a>,
     references: References<'a>,
-    octants: &'a [u32],
+    octants: &'a [u8],
     bounds: Aabb,
     lattice: Lattice,
     /// Where the walk is along each axis.
