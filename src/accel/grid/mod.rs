@@ -7,6 +7,7 @@
 mod build;
 mod cells;
 mod cover;
+mod line;
 mod met;
 mod open;
 mod options;

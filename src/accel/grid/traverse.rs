@@ -1,4 +1,9 @@
-use super::{Grid, cells::Cells, met::Met};
+use super::{
+    Grid,
+    cells::Cells,
+    line::{Line, Planes},
+    met::Met,
+};
 use crate::{
     accel::{Step, Traversal, leaf::References},
     geometry::{Aabb, Axis, AxisView, Lattice, PreparedRay, beyond, slack},
@@ -39,31 +44,6 @@ pub struct GridTraversal<'a> {
     tie: Tie,
 }
 
-/// A place along an axis, counted along the ray.
-#[derive(Clone, Copy, Debug)]
-struct Line {
-    /// Where the ray enters the next cell; never if there is none.
-    next: f32,
-    /// The number of the cell's far plane, and what is added to come to the next: there is one in the middle of each.
-    plane: f32,
-    turn: f32,
-    /// Cells behind this one.
-    behind: u32,
-    /// What is added to the number of the cell.
-    stride: u32,
-    /// The octants in the half of a cell that the ray enters first.
-    near: u32,
-}
-
-/// The planes of an axis as a ray sees them.
-#[derive(Clone, Copy)]
-struct Planes {
-    /// The first, and the distance from one to the next.
-    first: f32,
-    step: f32,
-    view: AxisView,
-}
-
 /// Cells that are visited at the same crossing: all combinations of going back by up to so many along each axis.
 #[derive(Clone, Copy, Debug, Default)]
 struct Tie {
@@ -71,100 +51,6 @@ struct Tie {
     most: [u32; 3],
     /// How many the cell at hand is back.
     back: [u32; 3],
-}
-
-impl Planes {
-    #[inline(always)]
-    fn of(lattice: &Lattice, ray: &PreparedRay, axis: usize) -> Self {
-        let (first, step) = lattice.along(axis as u32);
-        Self { first, step, view: ray.views[axis & 3] }
-    }
-
-    /// How far a plane is from the ray's origin.
-    #[inline(always)]
-    fn distance(&self, plane: f32) -> f32 {
-        self.first + plane * self.step - self.view.origin
-    }
-
-    /// Where the ray enters the half-space behind a plane.
-    #[inline(always)]
-    fn entry(&self, plane: f32) -> f32 {
-        self.distance(plane) * self.view.entry
-    }
-
-    /// Where it leaves that before the plane.
-    #[inline(always)]
-    fn exit(&self, plane: f32, slack: f32) -> f32 {
-        self.distance(plane) * self.view.exit + slack
-    }
-}
-
-impl Line {
-    /// No cells.
-    const NOWHERE: Self = Self { next: 0.0, plane: 0.0, turn: 0.0, behind: 0, stride: 0, near: 0 };
-
-    /// About the last of `count` cells that the ray enters up to where it is at `point`: roundings do not matter.
-    #[inline(always)]
-    fn about(planes: &Planes, count: u32, point: f32, stride: u32, lower: u32) -> Self {
-        let cell = (((point - planes.first) * 0.5 / planes.step) as u32).min(count.wrapping_sub(1));
-        let (plane, turn, stride, behind, near) = if planes.view.ascends() {
-            (cell + 1, 2.0, stride, count.wrapping_sub(1).wrapping_sub(cell), lower)
-        } else {
-            (cell, -2.0, stride.wrapping_neg(), cell, 0xff ^ lower)
-        };
-        let plane = (plane * 2) as i32 as f32;
-        let line = Self { next: 0.0, plane, turn, behind, stride, near };
-        Self { next: line.ahead(planes), ..line }
-    }
-
-    /// To the last cell that the ray enters up to `enter`, from wherever it is.
-    fn settle(&mut self, planes: &Planes, count: u32, enter: f32) {
-        while self.before(count) > 0 && planes.entry(self.plane - self.turn) > enter {
-            self.behind += 1;
-            self.plane -= self.turn;
-        }
-        self.next = self.ahead(planes);
-        // Written so that NaN, the ray in the plane, goes on.
-        while self.behind > 0 && !(self.next > enter) {
-            self.forward(planes);
-        }
-    }
-
-    /// Cells of `count` before this one.
-    #[inline(always)]
-    const fn before(&self, count: u32) -> u32 {
-        count.wrapping_sub(1).wrapping_sub(self.behind)
-    }
-
-    /// The number of this one.
-    #[inline(always)]
-    const fn number(&self, count: u32) -> u32 {
-        if self.turn > 0.0 { self.before(count) } else { self.behind }
-    }
-
-    /// To the next cell, of which there is one.
-    #[inline(always)]
-    fn forward(&mut self, planes: &Planes) {
-        self.behind = self.behind.wrapping_sub(1);
-        self.plane += self.turn;
-        self.next = self.ahead(planes);
-    }
-
-    /// Where the ray enters the next cell.
-    #[inline(always)]
-    fn ahead(&self, planes: &Planes) -> f32 {
-        if self.behind == 0 { f32::INFINITY } else { planes.entry(self.plane) }
-    }
-
-    /// How many cells back the ray has not left at `t`.
-    fn back(&self, planes: &Planes, count: u32, t: f32, slack: f32) -> u32 {
-        let (mut back, mut plane) = (0, self.plane - self.turn);
-        while back < self.before(count) && !(planes.exit(plane, slack) < t) {
-            back += 1;
-            plane -= self.turn;
-        }
-        back
-    }
 }
 
 impl<'a> GridTraversal<'a> {
