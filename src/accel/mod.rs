@@ -31,7 +31,7 @@ pub use list::List;
 pub use mailbox::Mailbox;
 pub use malformed::{Malformed, Reason};
 pub use octree::Octree;
-pub use structure::{AnyNode, AnyTraversal, Plan, Structure};
+pub use structure::{AnyLeaf, AnyNode, AnyTraversal, Plan, Structure};
 
 use crate::geometry::{Aabb, PreparedRay};
 
@@ -73,4 +73,16 @@ pub enum Step<L> {
     Paused,
     /// The end of the ray.
     Done,
+}
+
+impl<L> Step<L> {
+    /// The same, with another kind of leaf.
+    #[inline(always)]
+    pub fn map<M>(self, leaf: impl FnOnce(L) -> M) -> Step<M> {
+        match self {
+            Self::Leaf(of) => Step::Leaf(leaf(of)),
+            Self::Paused => Step::Paused,
+            Self::Done => Step::Done,
+        }
+    }
 }
