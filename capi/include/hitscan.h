@@ -85,7 +85,7 @@ enum hitscan_status
      */
     HITSCAN_CHECKSUM = -10,
     /**
-     * The asset has no triangles.
+     * The asset lacks a section that a scene needs, such as triangles.
      */
     HITSCAN_MISSING = -11,
     /**

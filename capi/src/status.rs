@@ -34,7 +34,7 @@ pub enum Status {
     Version = -9,
     /// The asset is damaged: its checksum is wrong.
     Checksum = -10,
-    /// The asset has no triangles.
+    /// The asset lacks a section that a scene needs, such as triangles.
     Missing = -11,
     /// The asset contradicts itself.
     Malformed = -12,
@@ -92,7 +92,7 @@ impl Status {
             Self::ByteOrder => c"the byte order is another machine's",
             Self::Version => c"the asset was made for another version of the library",
             Self::Checksum => c"the asset is damaged: its checksum is wrong",
-            Self::Missing => c"the asset has no triangles",
+            Self::Missing => c"the asset lacks a section that a scene needs",
             Self::Malformed => c"the asset contradicts itself",
             Self::Index => c"a triangle names a vertex that does not exist",
             Self::Vertex => c"a coordinate is not finite or beyond 2^126",
@@ -134,7 +134,7 @@ impl From<AssetError> for Status {
             AssetError::ByteOrder => Self::ByteOrder,
             AssetError::Version { .. } => Self::Version,
             AssetError::Checksum { .. } => Self::Checksum,
-            AssetError::Missing { .. } => Self::Missing,
+            AssetError::Missing { .. } | AssetError::NoStructure => Self::Missing,
             AssetError::Table { .. } | AssetError::Shape { .. } => Self::Malformed,
         }
     }

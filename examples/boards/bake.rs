@@ -22,8 +22,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     let words = Baker::new().mesh(&mesh).structure(KdTree::open(&tree)?).finish();
     fs::write(out.join("scene.hits"), words.into_iter().flat_map(u32::to_le_bytes).collect::<Vec<_>>())?;
 
-    // The board's own folder has a memory.x, unless its crates have one.
-    let memory = if env::var_os("CARGO_FEATURE_PICO2").is_some() { "memory-pico2.x" } else { "memory.x" };
+    // Some boards have a memory.x, some one for each feature; the crates of others bring their own.
+    let memory = match (env::var_os("CARGO_FEATURE_PICO2"), env::var_os("CARGO_FEATURE_PICO")) {
+        (Some(_), _) => "memory/pico2.x",
+        (None, Some(_)) => "memory/pico.x",
+        (None, None) => "memory.x",
+    };
     if Path::new(memory).exists() {
         fs::copy(memory, out.join("memory.x"))?;
         println!("cargo:rustc-link-search={}", out.display());

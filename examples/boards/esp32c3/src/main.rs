@@ -3,6 +3,8 @@
 #![no_std]
 #![no_main]
 
+use core::convert::Infallible;
+
 use esp_backtrace as _;
 use esp_hal::{clock::CpuClock, main, time::Instant};
 use esp_println::{print, println};
@@ -25,17 +27,16 @@ const HEIGHT: u32 = 28;
 #[main]
 fn main() -> ! {
     esp_hal::init(esp_hal::Config::default().with_cpu_clock(CpuClock::max()));
-    if let Err(error) = turn() {
-        println!("{error}");
-    }
-    loop {}
+    let Err(error) = turn();
+    panic!("{error}")
 }
 
-fn turn() -> Result<(), Error> {
+fn turn() -> Result<Infallible, Error> {
     let scene = Asset::open(SCENE)?.scene::<KdTree, Mesh>()?;
     let lights = [Light::directional(Vec3::new(-1.0, -2.0, -1.5), Vec3::ONE)];
-    for frame in 0_u32.. {
-        let angle = frame as f32 * 0.1;
+    let mut angle = 0.0;
+    loop {
+        angle += 0.1;
         let camera = Camera::framing(&scene.bounds(), Vec3::new(libm::sinf(angle), 0.6, libm::cosf(angle)), Vec3::Y);
         let renderer = Renderer::new(&scene, camera, WIDTH, HEIGHT).with_lights(&lights);
         let mut picture = [0_u8; (WIDTH * HEIGHT) as usize];
@@ -52,5 +53,4 @@ fn turn() -> Result<(), Error> {
         }
         println!("{} us per pixel", micros / u64::from(WIDTH * HEIGHT));
     }
-    Ok(())
 }

@@ -70,11 +70,11 @@ async fn main(_spawner: Spawner) {
                 unwrap!(renderer.fill(tile, next).ok());
                 next.iter_mut().for_each(|pixel| *pixel = pixel.to_be());
             };
-            unwrap!(join(send(&mut device, &mut dc, sent, ready), render).await.0);
+            unwrap!(join(send(&mut device, &mut dc, sent, ready), render).await.0.ok());
             core::mem::swap(ready, next);
             sent = tile;
         }
-        unwrap!(send(&mut device, &mut dc, sent, ready).await);
+        unwrap!(send(&mut device, &mut dc, sent, ready).await.ok());
         info!("frame {}: {} ms", frame, begun.elapsed().as_millis());
     }
 }

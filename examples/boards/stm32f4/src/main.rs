@@ -1,4 +1,4 @@
-//! A room in flash, and in front of it a box that moves: its tree is built anew in RAM for every frame. Prints what a
+//! A knot in flash, and in front of it a box that moves: its tree is built anew in RAM for every frame. Prints what a
 //! time-of-flight sensor of 8 x 8 zones would see, and the cycles that it took.
 //!
 //! "Black Pill" with an STM32F411 at 100 MHz; prints by RTT.
@@ -38,13 +38,14 @@ fn main() -> ! {
     let rcc = device.RCC.freeze(Config::hse(25.MHz()).sysclk(100.MHz()));
     let dwt = core.DWT.constrain(core.DCB, &rcc.clocks);
 
+    let still = unwrap!(Asset::open(SCENE).map_err(Into::into).and_then(|asset| asset.scene::<KdTree, Mesh>()));
     let mut memory = [0; KdTree::words(FACES.len(), &Options::fast())];
     let mut arena = Arena::new(&mut memory);
     for frame in 0_u32.. {
         let center = Vec3::new(0.0, libm::sinf(frame as f32 * 0.1), 1.5);
         let mut ranges = [[f32::INFINITY; ZONES]; ZONES];
         let mut result = Ok(());
-        let time = dwt.measure(|| result = arena.frame(|arena| look(arena, center, &mut ranges)));
+        let time = dwt.measure(|| result = arena.frame(|arena| look(&still, arena, center, &mut ranges)));
         unwrap!(result);
         info!("{} cycles for {} rays", time.as_ticks(), ZONES * ZONES);
         for row in &ranges {
@@ -54,9 +55,13 @@ fn main() -> ! {
     unreachable!()
 }
 
-/// The ranges to what is nearer: the scene in flash, or the box.
-fn look(arena: &mut Arena<'_>, center: Vec3, ranges: &mut [[f32; ZONES]; ZONES]) -> Result<(), Error> {
-    let still = Asset::open(SCENE)?.scene::<KdTree, Mesh>()?;
+/// The ranges to what is nearer: the scene in flash, or the box, whose tree is built here.
+fn look(
+    still: &Scene<KdTree<'_>, Mesh<'_>>,
+    arena: &mut Arena<'_>,
+    center: Vec3,
+    ranges: &mut [[f32; ZONES]; ZONES],
+) -> Result<(), Error> {
     let corners = core::array::from_fn::<_, 8, _>(|i| {
         let side = |bit: usize| if i >> bit & 1 == 0 { -0.2 } else { 0.2 };
         center + Vec3::new(side(0), side(1), side(2))
