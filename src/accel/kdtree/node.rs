@@ -85,10 +85,10 @@ impl Node {
 
     /// Whether a ray meets the right child first; `mask` repeats, every four bits, one bit per axis.
     ///
-    /// A shift by the link itself: shorter than to find the axis and look at its direction.
+    /// A turn by the link itself: shorter than to find the axis and look at its direction.
     #[inline(always)]
     pub(crate) const fn is_descended(self, mask: u32) -> bool {
-        mask >> (self.link & 31) & 1 != 0
+        mask.rotate_right(self.link) & 1 != 0
     }
 
     /// The number of an inner node's right child, or of a leaf's primitives.

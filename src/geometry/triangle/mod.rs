@@ -12,8 +12,8 @@ mod shortcut;
 
 use glam::Vec3;
 
-use self::filter::{Corner, Verdict};
-use super::{Aabb, Axis, PreparedRay, moved, ray::beyond};
+use self::filter::{Certain, Corners, Place, Verdict};
+use super::{Aabb, PreparedRay, moved, ray::beyond};
 use crate::math;
 
 /// A triangle given by its corners; counter-clockwise seen from its front.
@@ -64,24 +64,48 @@ fn agreement(signs: [Sign; 3]) -> Option<Sign> {
     }
 }
 
-/// [`Triangle::intersect`] for corners where they lie.
+/// [`Triangle::intersect`] for corners where they lie; the limits are asked for by a ray that does not clearly miss.
 #[inline(always)]
-pub(crate) fn intersect(corners: [impl Corner; 3], ray: &PreparedRay, t_min: f32, t_max: f32) -> Option<Crossing> {
-    let certify = |front| {
-        let [a, b, c] = corners.map(|v| Vec3::new(v.along(Axis::X), v.along(Axis::Y), v.along(Axis::Z)));
-        Triangle { a, b, c }.certify(ray, t_min, t_max, front)
-    };
+pub(crate) fn intersect(corners: Corners<'_>, ray: &PreparedRay, limits: impl Fn() -> (f32, f32)) -> Option<Crossing> {
     match filter::test(corners, ray) {
         Verdict::Miss => None,
-        Verdict::Hit(crossing) => Some(crossing),
-        Verdict::Near { crossing, error } => {
-            // Proven to lie outside: the slack belongs before any rounding that made `t` (rule R7).
-            if crossing.t + error < t_min || crossing.t - error > beyond(t_max) {
-                return None;
-            }
-            certify(Some(crossing.front))
-        }
-        Verdict::Unproven => certify(None),
+        Verdict::Hit(certain) => locate(corners, &certain, ray, limits()),
+        Verdict::Unproven => certify(corners, ray, limits(), None),
+    }
+}
+
+/// Where a ray that hits does so.
+///
+/// Out of line: most triangles are missed, and the loop that tests them needs all registers.
+#[inline(never)]
+fn locate(corners: Corners<'_>, certain: &Certain, ray: &PreparedRay, limits: (f32, f32)) -> Option<Crossing> {
+    match certain.place(ray) {
+        Place::Proven(crossing) => Some(crossing),
+        // Proven to lie outside: the slack belongs before any rounding that made `t` (rule R7).
+        Place::Near { crossing, error } if crossing.t + error < limits.0 || crossing.t - error > beyond(limits.1) => None,
+        Place::Near { crossing, .. } => certify(corners, ray, limits, Some(crossing.front)),
+    }
+}
+
+/// The slow tiers; `front` is known if the filter has proven the hit.
+#[cold]
+#[inline(never)]
+fn certify(corners: Corners<'_>, ray: &PreparedRay, (t_min, t_max): (f32, f32), front: Option<bool>) -> Option<Crossing> {
+    let [a, b, c] = corners.map(|&v| Vec3::from_array(v));
+    // A crossing lies between the corners' parameters along the major axis.
+    let [.., major] = ray.shear.axes;
+    let planes = [a, b, c].map(|v| ray.entry(major, major.of(v)));
+    let nearest = planes.iter().fold(f32::INFINITY, |x, &t| if t < x { t } else { x });
+    let farthest = planes.iter().fold(f32::NEG_INFINITY, |x, &t| if t > x { t } else { x });
+    if nearest > beyond(t_max) || beyond(farthest) < t_min {
+        return None;
+    }
+    let triangle = Triangle { a, b, c };
+    // Doubles are in hardware on hosts; on chips pairs of floats are several times faster than soft doubles.
+    if cfg!(any(target_pointer_width = "64", target_arch = "x86", target_arch = "wasm32")) {
+        shortcut::test(&triangle, ray, front)
+    } else {
+        double::test(&triangle, ray, front)
     }
 }
 
@@ -102,27 +126,7 @@ impl Triangle {
     #[inline(always)]
     #[must_use]
     pub fn intersect(&self, ray: &PreparedRay, t_min: f32, t_max: f32) -> Option<Crossing> {
-        intersect([self.a.as_ref(), self.b.as_ref(), self.c.as_ref()], ray, t_min, t_max)
-    }
-
-    /// The slow tiers; `front` is known if the filter has proven the hit.
-    #[cold]
-    #[inline(never)]
-    fn certify(&self, ray: &PreparedRay, t_min: f32, t_max: f32, front: Option<bool>) -> Option<Crossing> {
-        // A crossing lies between the corners' parameters along the major axis.
-        let [.., major] = ray.shear.axes;
-        let planes = [self.a, self.b, self.c].map(|v| ray.entry(major, major.of(v)));
-        let nearest = planes.iter().fold(f32::INFINITY, |x, &t| if t < x { t } else { x });
-        let farthest = planes.iter().fold(f32::NEG_INFINITY, |x, &t| if t > x { t } else { x });
-        if nearest > beyond(t_max) || beyond(farthest) < t_min {
-            return None;
-        }
-        // Doubles are in hardware on hosts; on chips pairs of floats are several times faster than soft doubles.
-        if cfg!(any(target_pointer_width = "64", target_arch = "x86", target_arch = "wasm32")) {
-            shortcut::test(self, ray, front)
-        } else {
-            double::test(self, ray, front)
-        }
+        intersect([self.a.as_ref(), self.b.as_ref(), self.c.as_ref()], ray, || (t_min, t_max))
     }
 
     /// The normal `(b - a) x (c - a)`, of twice the triangle's area in length, on the front side.
