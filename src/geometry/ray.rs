@@ -20,8 +20,14 @@ const fn magnitude(x: f32) -> u32 {
     x.to_bits() & 0x7fff_ffff
 }
 
-/// 2^-21, the relative error of a slope times a depth: five roundings, and what their products add.
-const SHEARED: f32 = 1.0 / 2_097_152.0;
+/// 2^-21, the relative error of a slope times a depth: five roundings, and what their products add; over [`LIFT`].
+const SHEARED: f32 = 1.0 / 2_097_152.0 / LIFT;
+
+/// 2^-46 over [`LIFT`]: what underflow can take from a slope, and no denormal.
+const FLAT: f32 = 1.0 / 70_368_744_177_664.0 / LIFT;
+
+/// 2^64, by which bounds on errors are lifted, so that they overflow before what they bound does.
+pub(crate) const LIFT: f32 = 18_446_744_073_709_551_616.0;
 
 /// A half-line with a closed interval of parameters and a visibility mask.
 ///
@@ -179,15 +185,15 @@ pub struct PreparedRay {
 /// What turns the ray into the third axis: see the triangle's filter.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Shear {
-    /// The axes in cyclic order, the last of which is the major one: along it the direction is largest.
-    pub(crate) axes: [Axis; 3],
+    /// The axis along which the direction is largest: the third one, behind the other two in cyclic order.
+    pub(crate) major: Axis,
     /// The ray's origin in this order.
     pub(crate) origin: [f32; 3],
     /// The direction along the first two over that along the major one.
     pub(crate) slope: [f32; 2],
     /// One over the direction along the major one.
     pub(crate) inverse: f32,
-    /// By how much the coordinates of a point at depth 1 may be off for the slopes' sake.
+    /// By how much the coordinates of a point at depth 1 may be off for the slopes' sake, over [`LIFT`].
     pub(crate) error: f32,
 }
 
@@ -213,14 +219,14 @@ impl PreparedRay {
         let x = AxisView::new(o.x, d.x, forward);
         let y = AxisView::new(o.y, d.y, forward);
         let z = AxisView::new(o.z, d.z, forward);
-        let (axes, origin, [first, second], inverse) = match major {
-            Axis::X => ([Axis::Y, Axis::Z, Axis::X], [o.y, o.z, o.x], [d.y, d.z], x.entry),
-            Axis::Y => ([Axis::Z, Axis::X, Axis::Y], [o.z, o.x, o.y], [d.z, d.x], y.entry),
-            Axis::Z => ([Axis::X, Axis::Y, Axis::Z], [o.x, o.y, o.z], [d.x, d.y], z.entry),
+        let (origin, [first, second], inverse) = match major {
+            Axis::X => ([o.y, o.z, o.x], [d.y, d.z], x.entry),
+            Axis::Y => ([o.z, o.x, o.y], [d.z, d.x], y.entry),
+            Axis::Z => ([o.x, o.y, o.z], [d.x, d.y], z.entry),
         };
         let slope = [first * inverse, second * inverse];
-        let error = greatest(slope[0].abs(), slope[1].abs()) * SHEARED + TINY;
-        let shear = Shear { axes, origin, slope, inverse, error };
+        let error = greatest(slope[0].abs(), slope[1].abs()) * SHEARED + FLAT;
+        let shear = Shear { major, origin, slope, inverse, error };
         let bit = |view: &AxisView, axis: Axis| view.entry.to_bits() >> 31 << axis as u32;
         let descending = (bit(&x, Axis::X) | bit(&y, Axis::Y) | bit(&z, Axis::Z)) * 0x1111_1111;
         let ray = Ray { origin: o, direction: d, t_min, t_max, mask: ray.mask };

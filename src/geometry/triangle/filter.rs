@@ -2,7 +2,10 @@
 
 use super::Crossing;
 use crate::{
-    geometry::{PreparedRay, ray::Shear},
+    geometry::{
+        Axis, PreparedRay,
+        ray::{LIFT, Shear},
+    },
     math::greatest,
 };
 
@@ -17,9 +20,6 @@ const TOLERANCE: f32 = 1.0 / 131_072.0;
 
 /// 2^-100: smaller magnitudes are left to the tiers with a wider range.
 const SMALL: f32 = 7.888_609e-31;
-
-/// 2^100: below, no product has overflowed.
-const LARGE: f32 = 1.267_650_6e30;
 
 /// What `f32` can prove of the edge functions' signs.
 pub(super) enum Verdict {
@@ -41,7 +41,7 @@ pub(super) struct Certain {
     spread: f32,
 }
 
-/// Three corners where they lie: they are indexed by axis, which in memory costs one load and in registers a detour.
+/// Three corners where they lie.
 pub(super) type Corners<'t> = [&'t [f32; 3]; 3];
 
 /// The corners relative to the ray's origin, sheared so that the ray runs along the third axis.
@@ -51,15 +51,25 @@ pub(super) struct Sheared {
     z: [f32; 3],
 }
 
+/// [`Sheared`] with the axes in this order.
 #[inline(always)]
-pub(super) fn shear(corners: Corners<'_>, ray: &PreparedRay) -> Sheared {
-    let Shear { axes: [kx, ky, kz], origin: [ox, oy, oz], slope: [sx, sy], .. } = ray.shear;
-    // Corner by corner, without an index: at opt-level "s" it would be checked.
+fn along<const X: usize, const Y: usize, const Z: usize>(corners: Corners<'_>, shear: &Shear) -> Sheared {
+    let ([ox, oy, oz], [sx, sy]) = (shear.origin, shear.slope);
     let [a, b, c] = corners.map(|v| {
-        let z = v[kz as usize] - oz;
-        [(v[kx as usize] - ox) - sx * z, (v[ky as usize] - oy) - sy * z, z]
+        let z = v[Z] - oz;
+        [(v[X] - ox) - sx * z, (v[Y] - oy) - sy * z, z]
     });
     Sheared { x: [a[0], b[0], c[0]], y: [a[1], b[1], c[1]], z: [a[2], b[2], c[2]] }
+}
+
+/// A way for each major axis: all rays of a query take the same one, and no address has to be computed.
+#[inline(always)]
+pub(super) fn shear(corners: Corners<'_>, ray: &PreparedRay) -> Sheared {
+    match ray.shear.major {
+        Axis::X => along::<1, 2, 0>(corners, &ray.shear),
+        Axis::Y => along::<2, 0, 1>(corners, &ray.shear),
+        Axis::Z => along::<0, 1, 2>(corners, &ray.shear),
+    }
 }
 
 /// Twice the areas that the ray spans with the edges opposite `a`, `b` and `c`.
@@ -80,11 +90,12 @@ pub(super) fn test(corners: Corners<'_>, ray: &PreparedRay) -> Verdict {
     let spread = ((ax.abs() + ay.abs()) + (bx.abs() + by.abs())) + (cx.abs() + cy.abs());
     let depth = (az.abs() + bz.abs()) + cz.abs();
 
-    // Signs are proven outside ±bound; comparisons are written so that NaN and infinity prove nothing.
-    let bound = (ray.shear.error * depth + spread * (2.0 * U)) * spread + UNDERFLOW;
+    // Signs are proven outside ±bound; comparisons are written so that NaN and infinity prove nothing. If a product of
+    // coordinates has overflowed, so has the bound.
+    let bound = (ray.shear.error * depth + spread * (2.0 * U / LIFT)) * (spread * LIFT) + UNDERFLOW;
     let hit = if (u > bound) | (v > bound) | (w > bound) {
         if (u < -bound) | (v < -bound) | (w < -bound) {
-            return if bound < LARGE { Verdict::Miss } else { Verdict::Unproven };
+            return Verdict::Miss;
         }
         (u > bound) & (v > bound) & (w > bound)
     } else {
@@ -120,7 +131,7 @@ impl Certain {
         let edge = (depth * (8.0 * U) + spread * (4.0 * U)) * spread + UNDERFLOW;
         let error = extent * spread * (depth + spread) + (depth + extent) * area;
         let crossing = Crossing { t, front };
-        if !(edge * 16.0 < area && area < LARGE) {
+        if !(edge * 16.0 < area && area < 1.0e30) {
             return Place::Near { crossing, error: f32::INFINITY };
         }
         let limit = TOLERANCE * q.abs() * area;

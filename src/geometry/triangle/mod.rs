@@ -14,7 +14,7 @@ use glam::Vec3;
 
 use self::filter::{Certain, Corners, Place, Verdict};
 use super::{Aabb, PreparedRay, moved, ray::beyond};
-use crate::math;
+use crate::math::{self, greatest, least};
 
 /// A triangle given by its corners; counter-clockwise seen from its front.
 ///
@@ -66,47 +66,70 @@ fn agreement(signs: [Sign; 3]) -> Option<Sign> {
 
 /// [`Triangle::intersect`] for corners where they lie; the limits are asked for by a ray that does not clearly miss.
 #[inline(always)]
-pub(crate) fn intersect(corners: Corners<'_>, ray: &PreparedRay, limits: impl Fn() -> (f32, f32)) -> Option<Crossing> {
-    match filter::test(corners, ray) {
+pub(crate) fn intersect(
+    [a, b, c]: Corners<'_>,
+    ray: &PreparedRay,
+    limits: impl Fn() -> (f32, f32),
+) -> Option<Crossing> {
+    match filter::test([a, b, c], ray) {
         Verdict::Miss => None,
-        Verdict::Hit(certain) => locate(corners, &certain, ray, limits()),
-        Verdict::Unproven => certify(corners, ray, limits(), None),
+        Verdict::Hit(certain) => locate(a, b, c, &certain, ray, limits()),
+        Verdict::Unproven => certify(a, b, c, ray, limits(), None),
     }
 }
 
 /// Where a ray that hits does so.
 ///
-/// Out of line: most triangles are missed, and the loop that tests them needs all registers.
+/// Out of line: most triangles are missed, and the loop that tests them needs all registers. Corners one by one, because
+/// an array would be filled for those that are missed, too.
 #[inline(never)]
-fn locate(corners: Corners<'_>, certain: &Certain, ray: &PreparedRay, limits: (f32, f32)) -> Option<Crossing> {
+fn locate(
+    a: &[f32; 3],
+    b: &[f32; 3],
+    c: &[f32; 3],
+    certain: &Certain,
+    ray: &PreparedRay,
+    limits: (f32, f32),
+) -> Option<Crossing> {
     match certain.place(ray) {
         Place::Proven(crossing) => Some(crossing),
         // Proven to lie outside: the slack belongs before any rounding that made `t` (rule R7).
-        Place::Near { crossing, error } if crossing.t + error < limits.0 || crossing.t - error > beyond(limits.1) => None,
-        Place::Near { crossing, .. } => certify(corners, ray, limits, Some(crossing.front)),
+        Place::Near { crossing, error } if crossing.t + error < limits.0 || crossing.t - error > beyond(limits.1) => {
+            None
+        }
+        Place::Near { crossing, .. } => certify(a, b, c, ray, limits, Some(crossing.front)),
     }
 }
 
 /// The slow tiers; `front` is known if the filter has proven the hit.
 #[cold]
 #[inline(never)]
-fn certify(corners: Corners<'_>, ray: &PreparedRay, (t_min, t_max): (f32, f32), front: Option<bool>) -> Option<Crossing> {
-    let [a, b, c] = corners.map(|&v| Vec3::from_array(v));
-    // A crossing lies between the corners' parameters along the major axis.
-    let [.., major] = ray.shear.axes;
-    let planes = [a, b, c].map(|v| ray.entry(major, major.of(v)));
-    let nearest = planes.iter().fold(f32::INFINITY, |x, &t| if t < x { t } else { x });
-    let farthest = planes.iter().fold(f32::NEG_INFINITY, |x, &t| if t > x { t } else { x });
-    if nearest > beyond(t_max) || beyond(farthest) < t_min {
+fn certify(
+    &a: &[f32; 3],
+    &b: &[f32; 3],
+    &c: &[f32; 3],
+    ray: &PreparedRay,
+    limits: (f32, f32),
+    front: Option<bool>,
+) -> Option<Crossing> {
+    let triangle = Triangle { a: a.into(), b: b.into(), c: c.into() };
+    if is_outside(&triangle, ray, limits) {
         return None;
     }
-    let triangle = Triangle { a, b, c };
     // Doubles are in hardware on hosts; on chips pairs of floats are several times faster than soft doubles.
     if cfg!(any(target_pointer_width = "64", target_arch = "x86", target_arch = "wasm32")) {
         shortcut::test(&triangle, ray, front)
     } else {
         double::test(&triangle, ray, front)
     }
+}
+
+/// Whether a crossing cannot lie within the limits: it lies between the corners' parameters along the major axis.
+#[inline(never)]
+fn is_outside(triangle: &Triangle, ray: &PreparedRay, (t_min, t_max): (f32, f32)) -> bool {
+    let major = ray.shear.major;
+    let [a, b, c] = [triangle.a, triangle.b, triangle.c].map(|v| ray.entry(major, major.of(v)));
+    least(least(a, b), c) > beyond(t_max) || beyond(greatest(greatest(a, b), c)) < t_min
 }
 
 impl Triangle {
