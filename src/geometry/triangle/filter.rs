@@ -3,7 +3,7 @@
 use super::Crossing;
 use crate::{
     geometry::{
-        Axis, PreparedRay,
+        Axis, Lattice, PreparedRay, beyond,
         ray::{LIFT, Shear},
     },
     math::greatest,
@@ -41,8 +41,26 @@ pub(super) struct Certain {
     spread: f32,
 }
 
-/// Three corners where they lie.
-pub(super) type Corners<'t> = [&'t [f32; 3]; 3];
+/// A corner where it lies, asked by axis.
+pub(crate) trait Corner: Copy {
+    /// The coordinate along an axis.
+    fn along(self, axis: Axis) -> f32;
+}
+
+impl Corner for &[f32; 3] {
+    #[inline(always)]
+    fn along(self, axis: Axis) -> f32 {
+        self[axis as usize]
+    }
+}
+
+/// Half-words that number planes.
+impl Corner for (&Lattice, &[u16; 3]) {
+    #[inline(always)]
+    fn along(self, axis: Axis) -> f32 {
+        self.0.plane(axis as u32, u32::from(self.1[axis as usize]))
+    }
+}
 
 /// The corners relative to the ray's origin, sheared so that the ray runs along the third axis.
 pub(super) struct Sheared {
@@ -53,22 +71,22 @@ pub(super) struct Sheared {
 
 /// [`Sheared`] with the axes in this order.
 #[inline(always)]
-fn along<const X: usize, const Y: usize, const Z: usize>(corners: Corners<'_>, shear: &Shear) -> Sheared {
+fn in_order([x, y, z]: [Axis; 3], corners: [impl Corner; 3], shear: &Shear) -> Sheared {
     let ([ox, oy, oz], [sx, sy]) = (shear.origin, shear.slope);
     let [a, b, c] = corners.map(|v| {
-        let z = v[Z] - oz;
-        [(v[X] - ox) - sx * z, (v[Y] - oy) - sy * z, z]
+        let z = v.along(z) - oz;
+        [(v.along(x) - ox) - sx * z, (v.along(y) - oy) - sy * z, z]
     });
     Sheared { x: [a[0], b[0], c[0]], y: [a[1], b[1], c[1]], z: [a[2], b[2], c[2]] }
 }
 
-/// A way for each major axis: all rays of a query take the same one, and no address has to be computed.
+/// A way for each major axis: all tests of a ray take the same one, and no address has to be computed.
 #[inline(always)]
-pub(super) fn shear(corners: Corners<'_>, ray: &PreparedRay) -> Sheared {
+pub(super) fn shear(corners: [impl Corner; 3], ray: &PreparedRay) -> Sheared {
     match ray.shear.major {
-        Axis::X => along::<1, 2, 0>(corners, &ray.shear),
-        Axis::Y => along::<2, 0, 1>(corners, &ray.shear),
-        Axis::Z => along::<0, 1, 2>(corners, &ray.shear),
+        Axis::X => in_order([Axis::Y, Axis::Z, Axis::X], corners, &ray.shear),
+        Axis::Y => in_order([Axis::Z, Axis::X, Axis::Y], corners, &ray.shear),
+        Axis::Z => in_order([Axis::X, Axis::Y, Axis::Z], corners, &ray.shear),
     }
 }
 
@@ -83,7 +101,7 @@ pub(super) fn edges(s: &Sheared) -> [f32; 3] {
 
 /// Whether the ray hits, as far as `f32` can prove it.
 #[inline(always)]
-pub(super) fn test(corners: Corners<'_>, ray: &PreparedRay) -> Verdict {
+pub(super) fn test(corners: [impl Corner; 3], ray: &PreparedRay) -> Verdict {
     let s = shear(corners, ray);
     let [u, v, w] = edges(&s);
     let ([ax, bx, cx], [ay, by, cy], [az, bz, cz]) = (s.x, s.y, s.z);
@@ -104,17 +122,12 @@ pub(super) fn test(corners: Corners<'_>, ray: &PreparedRay) -> Verdict {
     if hit { Verdict::Hit(Certain { edges: [u, v, w], depths: s.z, spread }) } else { Verdict::Unproven }
 }
 
-/// Where a ray that hits does so.
-pub(super) enum Place {
-    /// Here.
-    Proven(Crossing),
-    /// Within `error` of this parameter.
-    Near { crossing: Crossing, error: f32 },
-}
-
 impl Certain {
-    /// The crossing, as far as `f32` can prove where it is.
-    pub(super) fn place(&self, ray: &PreparedRay) -> Place {
+    /// The crossing; none if it is proven to lie outside the limits, NaN for a parameter that `f32` cannot prove.
+    ///
+    /// Out of line: most triangles are missed, and the loop that tests them needs all registers.
+    #[inline(never)]
+    pub(super) fn place(&self, ray: &PreparedRay, (t_min, t_max): (f32, f32)) -> Option<Crossing> {
         let &Self { edges: [u, v, w], depths: [az, bz, cz], spread } = self;
         // The determinant has the sign of -(d . N) * d_major.
         let determinant = (u + v) + w;
@@ -130,15 +143,16 @@ impl Certain {
         // The errors of an edge function and of q, which is at most 8 U error / area.
         let edge = (depth * (8.0 * U) + spread * (4.0 * U)) * spread + UNDERFLOW;
         let error = extent * spread * (depth + spread) + (depth + extent) * area;
-        let crossing = Crossing { t, front };
+        let unproven = Crossing { t: f32::NAN, front };
         if !(edge * 16.0 < area && area < 1.0e30) {
-            return Place::Near { crossing, error: f32::INFINITY };
+            return Some(unproven);
         }
         let limit = TOLERANCE * q.abs() * area;
         if error * (8.0 * U) < limit && limit > SMALL && q.abs() > SMALL && t.abs() > 1.0e-30 && t.abs() < 1.0e37 {
-            return Place::Proven(crossing);
+            return Some(Crossing { t, front });
         }
+        // Proven to lie outside: the slack belongs before any rounding that made `t` (rule R7).
         let error = ((error * (8.0 * U) + 1.0e-36) / area + q.abs() * (8.0 * U) + 1.0e-36) * inverse.abs() + 1.0e-36;
-        Place::Near { crossing, error }
+        if t + error < t_min || t - error > beyond(t_max) { None } else { Some(unproven) }
     }
 }

@@ -12,8 +12,8 @@ mod shortcut;
 
 use glam::Vec3;
 
-use self::filter::{Certain, Corners, Place, Verdict};
-use super::{Aabb, PreparedRay, moved, ray::beyond};
+use self::filter::{Corner, Verdict};
+use super::{Aabb, Axis, PreparedRay, moved, ray::beyond};
 use crate::math::{self, greatest, least};
 
 /// A triangle given by its corners; counter-clockwise seen from its front.
@@ -66,62 +66,36 @@ fn agreement(signs: [Sign; 3]) -> Option<Sign> {
 
 /// [`Triangle::intersect`] for corners where they lie; the limits are asked for by a ray that does not clearly miss.
 #[inline(always)]
-pub(crate) fn intersect(
-    [a, b, c]: Corners<'_>,
+pub(crate) fn intersect<C: Corner>(
+    [a, b, c]: [C; 3],
     ray: &PreparedRay,
     limits: impl Fn() -> (f32, f32),
 ) -> Option<Crossing> {
     match filter::test([a, b, c], ray) {
         Verdict::Miss => None,
-        Verdict::Hit(certain) => locate(a, b, c, &certain, ray, limits()),
+        Verdict::Hit(certain) => match certain.place(ray, limits()) {
+            Some(crossing) if crossing.t.is_nan() => certify(a, b, c, ray, limits(), Some(crossing.front)),
+            proven => proven,
+        },
         Verdict::Unproven => certify(a, b, c, ray, limits(), None),
     }
 }
 
-/// Where a ray that hits does so.
-///
-/// Out of line: most triangles are missed, and the loop that tests them needs all registers. Corners one by one, because
-/// an array would be filled for those that are missed, too.
-#[inline(never)]
-fn locate(
-    a: &[f32; 3],
-    b: &[f32; 3],
-    c: &[f32; 3],
-    certain: &Certain,
-    ray: &PreparedRay,
-    limits: (f32, f32),
-) -> Option<Crossing> {
-    match certain.place(ray) {
-        Place::Proven(crossing) => Some(crossing),
-        // Proven to lie outside: the slack belongs before any rounding that made `t` (rule R7).
-        Place::Near { crossing, error } if crossing.t + error < limits.0 || crossing.t - error > beyond(limits.1) => {
-            None
-        }
-        Place::Near { crossing, .. } => certify(a, b, c, ray, limits, Some(crossing.front)),
-    }
-}
-
 /// The slow tiers; `front` is known if the filter has proven the hit.
+///
+/// Corners one by one, because an array would be filled for those that are missed, too.
 #[cold]
 #[inline(never)]
-fn certify(
-    &a: &[f32; 3],
-    &b: &[f32; 3],
-    &c: &[f32; 3],
+fn certify<C: Corner>(
+    a: C,
+    b: C,
+    c: C,
     ray: &PreparedRay,
     limits: (f32, f32),
     front: Option<bool>,
 ) -> Option<Crossing> {
-    let triangle = Triangle { a: a.into(), b: b.into(), c: c.into() };
-    if is_outside(&triangle, ray, limits) {
-        return None;
-    }
-    // Doubles are in hardware on hosts; on chips pairs of floats are several times faster than soft doubles.
-    if cfg!(any(target_pointer_width = "64", target_arch = "x86", target_arch = "wasm32")) {
-        shortcut::test(&triangle, ray, front)
-    } else {
-        double::test(&triangle, ray, front)
-    }
+    let [a, b, c] = [a, b, c].map(|v| Vec3::new(v.along(Axis::X), v.along(Axis::Y), v.along(Axis::Z)));
+    Triangle { a, b, c }.certify(ray, limits, front)
 }
 
 /// Whether a crossing cannot lie within the limits: it lies between the corners' parameters along the major axis.
@@ -150,6 +124,20 @@ impl Triangle {
     #[must_use]
     pub fn intersect(&self, ray: &PreparedRay, t_min: f32, t_max: f32) -> Option<Crossing> {
         intersect([self.a.as_ref(), self.b.as_ref(), self.c.as_ref()], ray, || (t_min, t_max))
+    }
+
+    /// The slow tiers for all kinds of corners.
+    #[inline(never)]
+    fn certify(&self, ray: &PreparedRay, limits: (f32, f32), front: Option<bool>) -> Option<Crossing> {
+        if is_outside(self, ray, limits) {
+            return None;
+        }
+        // Doubles are in hardware on hosts; on chips pairs of floats are several times faster than soft doubles.
+        if cfg!(any(target_pointer_width = "64", target_arch = "x86", target_arch = "wasm32")) {
+            shortcut::test(self, ray, front)
+        } else {
+            double::test(self, ray, front)
+        }
     }
 
     /// The normal `(b - a) x (c - a)`, of twice the triangle's area in length, on the front side.
