@@ -30,8 +30,9 @@ use hitscan::{
 };
 
 fn main() -> Result<(), Box<dyn Error>> {
-    for input in ["build.rs", "bake", "memory", "src"] {
-        println!("cargo:rerun-if-changed={input}");
+    println!("cargo:rerun-if-changed=bake\ncargo:rerun-if-changed=memory");
+    for source in ["answer", "builds", "camera", "hash", "picture", "room"] {
+        println!("cargo:rerun-if-changed=src/{source}.rs");
     }
     let out = env::var("OUT_DIR")?;
     let out = Path::new(&out);
