@@ -56,7 +56,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     } else if fpu {
         (100, 5)
     } else {
-        (40, 4)
+        (20, 4)
     };
     let code = [knots(out, model)?, ranges()?, contest::contest(out, small)?];
     Ok(fs::write(out.join("baked.rs"), code.concat())?)

@@ -4,7 +4,7 @@ use core::convert::Infallible;
 
 use embedded_graphics::{
     mono_font::{MonoTextStyle, ascii::FONT_6X10},
-    pixelcolor::{BinaryColor, Gray8, Rgb565},
+    pixelcolor::{BinaryColor, Rgb565},
     prelude::*,
     primitives::Rectangle,
     text::Text,
@@ -29,28 +29,32 @@ const ROWS: u32 = 8;
 ///
 /// Those of `show`.
 pub fn color<S: Caster, E>(scene: &S, show: impl FnMut(&[Rgb565]) -> Result<(), E>) -> Result<(), E> {
-    draw(scene, COLOR, Rgb565::CSS_ORANGE, |_, light| Rgb565::from_linear(light), show)
+    let sky = [Vec3::splat(0.8), Vec3::new(0.25, 0.4, 0.7)];
+    draw(scene, COLOR, sky, Rgb565::CSS_ORANGE, |_, light| Rgb565::from_linear(light), show)
 }
 
-/// Lets `show` have the strips of the picture in black and white, dithered: Bayer, *An optimum method for two-level rendition of
-/// continuous-tone pictures*, 1973.
+/// Lets `show` have the strips of the picture in black and white, dithered.
+///
+/// Bayer, *An optimum method for two-level rendition of continuous-tone pictures*, 1973.
 ///
 /// # Errors
 ///
 /// Those of `show`.
 pub fn binary<S: Caster, E>(scene: &S, show: impl FnMut(&[BinaryColor]) -> Result<(), E>) -> Result<(), E> {
     const THRESHOLDS: [[u8; 4]; 4] = [[0, 8, 2, 10], [12, 4, 14, 6], [3, 11, 1, 9], [15, 7, 13, 5]];
-    let dithered = |(x, y): (u32, u32), light| {
+    let dithered = |(x, y): (u32, u32), light: Vec3| {
         let threshold = THRESHOLDS[y as usize % 4][x as usize % 4];
-        BinaryColor::from(Gray8::from_linear(light).luma() > threshold * 16 + 8)
+        // Green is most of what is seen.
+        BinaryColor::from(light.y * 16.0 > f32::from(threshold) + 0.5)
     };
-    draw(scene, BINARY, BinaryColor::On, dithered, show)
+    draw(scene, BINARY, [Vec3::ZERO; 2], BinaryColor::On, dithered, show)
 }
 
-/// Draws a picture of `size`, of what `color` makes of the light at a pixel, with a label in `ink`.
+/// Draws a picture of `size` before a `sky`, of what `color` makes of the light at a pixel, with a label in `ink`.
 fn draw<S: Caster, C: PixelColor, E>(
     scene: &S,
     size: Size,
+    sky: [Vec3; 2],
     ink: C,
     color: impl Fn((u32, u32), Vec3) -> C,
     mut show: impl FnMut(&[C]) -> Result<(), E>,
@@ -58,6 +62,7 @@ fn draw<S: Caster, C: PixelColor, E>(
     let lights = [Light::directional(Vec3::new(0.4, -1.0, 0.8), Vec3::ONE)];
     let camera = Camera::framing(&scene.bounds(), Vec3::new(0.2, 0.3, -1.0), Vec3::Y);
     let renderer = Renderer::new(scene, camera, size.width, size.height).with_lights(&lights);
+    let renderer = renderer.with_background(sky[0], sky[1]);
     let mut pixels = [ink; (COLOR.width * ROWS) as usize];
     for tile in renderer.tiles(size.width, ROWS) {
         let area = Rectangle::new(Point::new(0, tile.y as i32), Size::new(tile.width, tile.height));
