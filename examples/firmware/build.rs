@@ -58,16 +58,18 @@ fn main() -> Result<(), Box<dyn Error>> {
     } else {
         (20, 4)
     };
-    let code = [knots(out, model)?, ranges()?, contest::contest(out, small)?];
+    // A micro:bit's 256 kB hold all programs at once with the smaller tree.
+    let options = if small { Options::small() } else { Options::balanced() };
+    let code = [knots(out, &options, model)?, ranges()?, contest::contest(out, small)?];
     Ok(fs::write(out.join("baked.rs"), code.concat())?)
 }
 
 /// The knot in flash, its pictures, and the knot that is built on the device with the hashes of what is built.
-fn knots(out: &Path, (along, around): (u16, u16)) -> Result<String, Box<dyn Error>> {
+fn knots(out: &Path, options: &Options, (along, around): (u16, u16)) -> Result<String, Box<dyn Error>> {
     let mut code = String::new();
     let (vertices, triangles) = knot::mesh(100, 5);
     let mesh = Mesh::new(&vertices, triangles.as_slice())?;
-    let tree = bake::build(&mesh, &Plan::KdTree(Options::balanced()))?;
+    let tree = bake::build(&mesh, &Plan::KdTree(*options))?;
     let scene = Scene::new(KdTree::open(&tree)?, mesh)?;
     code += &asset(out, "KNOT", "A torus knot of 1,000 triangles.", &scene)?;
     let (mut color, mut binary) = (Hash::NONE, Hash::NONE);
