@@ -24,7 +24,7 @@ use embedded_graphics::prelude::*;
 use hash::Hash;
 use hitscan::{
     Accelerator, Arena, KdTree, Mesh, Primitives, Scene,
-    accel::{Plan, Structure},
+    accel::Plan,
     bake::{self, Baker},
     kdtree::Options,
 };
@@ -91,11 +91,12 @@ fn knots(out: &Path, options: &Options, (along, around): (u16, u16)) -> Result<S
     let tree = bake::build(&mesh, &Plan::KdTree(Options::small()))?;
     code +=
         &asset(out, "MODEL", "The knot over which structures are built.", &Scene::new(KdTree::open(&tree)?, mesh)?)?;
-    let mut memory = vec![0; 1 << 20];
     let mut hashes = vec![];
-    for (_, plan) in builds::BUILDS {
-        let structure = Structure::build(&mesh, &mut Arena::new(&mut memory), &plan)?;
-        hashes.push(Hash::of(structure.as_words().iter().copied()));
+    for build in builds::BUILDS {
+        let mut memory = vec![0; (build.words)(mesh.len() as usize)];
+        let words = (build.build)(&mesh, &mut Arena::new(&mut memory));
+        let words = words.map_err(|error| format!("{}: {error}", build.name))?;
+        hashes.push(Hash::of(words.iter().copied()));
     }
     writeln!(code, "/// The words of [`BUILDS`].\npub const HASHES: [Hash; BUILDS.len()] = {hashes:?};")?;
     Ok(code)

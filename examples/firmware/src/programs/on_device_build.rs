@@ -2,9 +2,7 @@
 //! hierarchy that is refitted or built anew each frame.
 
 use hitscan::{
-    Arena, Bvh, List, Mesh, Primitives, Scene,
-    accel::{Plan, Structure},
-    bvh,
+    Arena, Bvh, List, Mesh, Primitives, Scene, bvh,
     error::{BuildError, Error},
     glam::Vec3,
 };
@@ -13,7 +11,7 @@ use semihosting::println;
 use crate::{
     Board, Counter,
     baked::{HASHES, MODEL},
-    builds::BUILDS,
+    builds::{BUILDS, Build},
     camera, figure,
     hash::Hash,
     stack_of,
@@ -29,8 +27,8 @@ pub fn run(board: &mut Board) -> bool {
     let mut arena = Arena::new(board.memory);
     // What one frame took is free again in the next.
     let mut same = true;
-    for ((name, plan), host) in BUILDS.iter().zip(HASHES) {
-        same &= arena.frame(|arena| built(name, plan, &mesh, arena, &board.counter, host));
+    for (build, host) in BUILDS.iter().zip(HASHES) {
+        same &= arena.frame(|arena| built(build, &mesh, arena, &board.counter, host));
     }
     let moved = obstacle(&mesh, board.memory, &board.counter);
     same && moved.unwrap_or_else(|error| {
@@ -40,24 +38,24 @@ pub fn run(board: &mut Board) -> bool {
 }
 
 /// Builds one structure; whether its words are the host's, or it does not fit.
-fn built(name: &str, plan: &Plan, mesh: &Mesh, arena: &mut Arena, counter: &Counter, host: Hash) -> bool {
-    let (mut structure, mut instructions) = (None, 0);
+fn built(build: &Build, mesh: &Mesh, arena: &mut Arena, counter: &Counter, host: Hash) -> bool {
+    let name = build.name;
+    let (mut words, mut instructions) = (None, 0);
     let stack = stack_of(&mut || {
-        instructions = counter.instructions(|| structure = Some(Structure::build(mesh, arena, plan)));
+        instructions = counter.instructions(|| words = Some((build.build)(mesh, arena)));
     });
-    match structure {
-        Some(Ok(structure)) => {
-            let words = structure.as_words();
-            let (length, enough) = (words.len(), plan.words(mesh.len() as usize));
+    match words {
+        Some(Ok(words)) => {
+            let (length, enough) = (words.len(), (build.words)(mesh.len() as usize));
             println!(
-                "{name:14} {length:6} words, {enough:6} to build, {instructions:9} instructions, {stack:5} B of stack"
+                "{name:16} {length:6} words, {enough:6} to build, {instructions:9} instructions, {stack:5} B of stack"
             );
             figure("build", name, instructions);
             figure("build_stack", name, stack as u64);
             Hash::of(words.iter().copied()) == host
         }
         Some(Err(BuildError::Full(full))) => {
-            println!("{name:14} {full}");
+            println!("{name:16} {full}");
             true
         }
         _ => false,
