@@ -49,7 +49,7 @@ impl Named {
     /// All of them, the list first: answers and speeds are compared with its own.
     pub const ALL: &[Self] = &[
         Self { is_candidate: false, ..Self::new("list", 0.0, |_| Plan::List) },
-        Self::new("grid", 2.4, |preset| Plan::Grid(tuned!(preset, grid::Options))),
+        Self::new("grid", 2.8, |preset| Plan::Grid(tuned!(preset, grid::Options))),
         Self::new("octree", 1.6, |preset| Plan::Octree(tuned!(preset, octree::Options))),
         Self { is_candidate: false, ..Self::new("kdtree-midpoint", 0.65, |preset| kd(preset, Split::Midpoint)) },
         Self { is_candidate: false, ..Self::new("kdtree-median", 0.65, |preset| kd(preset, Split::Median)) },
