@@ -84,10 +84,10 @@ fn frame(bounds: Aabb) -> Aabb {
     }
     let longest = bounds.size().max_element();
     let end = |min: f32, max: f32| {
-        // Steps of two to four units in the last place of the largest coordinate; along an axis without extent, the
+        // Steps of four to eight units in the last place of the largest coordinate; along an axis without extent, the
         // frame is as thick as that needs.
         let largest = if min.abs() > max.abs() { min.abs() } else { max.abs() };
-        let least = (largest / 64.0).max(longest / 65_536.0).max(f32::MIN_POSITIVE * 131_072.0);
+        let least = (largest / 32.0).max(longest / 65_536.0).max(f32::MIN_POSITIVE * 131_072.0);
         let size = (max - min).max(least);
         // One step more, and what the roundings take.
         (min + size * (65_537.0 / 65_535.0)).min(MAX_COORDINATE)
@@ -102,7 +102,8 @@ fn displacement(mesh: &Mesh<'_>, moved: &LatticeMesh<'_>) -> f32 {
     let corners = (0..mesh.len()).filter_map(|triangle| mesh.indices().get(triangle)).flatten();
     let squares = corners.filter_map(|vertex| {
         let (from, to) = (mesh.vertices().get(vertex as usize)?, positions.get(vertex as usize)?);
-        Some((to.as_dvec3() - from.as_dvec3()).length_squared())
+        let squares = Axis::ALL.map(|axis| f64::from(axis.of(*to)) - f64::from(axis.of(*from))).map(|x| x * x);
+        Some(squares.iter().sum::<f64>())
     });
     let exact = crate::math::sqrt64(squares.fold(0.0, f64::max));
     let rounded = exact as f32;
