@@ -6,6 +6,8 @@ mod answer;
 mod camera;
 #[path = "bake/knot.rs"]
 mod knot;
+#[path = "bake/lattice.rs"]
+mod lattice;
 
 use std::{env, error::Error, fmt::Write as _, fs, path::Path};
 
@@ -42,6 +44,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let triangles = usize::from(along) * usize::from(around) * 2;
     writeln!(code, "/// Triangles of [`REBUILT`].\npub const REBUILT_TRIANGLES: usize = {triangles};")?;
     code += &contest(out)?;
+    code += &lattice::contest(out, board == "microbit")?;
     Ok(fs::write(out.join("baked.rs"), code)?)
 }
 

@@ -1,0 +1,58 @@
+//! Queries in whole numbers: instructions per ray, and bytes per triangle with its vertices, over torus knots on lattices.
+
+#![no_std]
+#![no_main]
+
+use core::hint::black_box;
+
+use firmware::{
+    Answer, Counter,
+    baked::{Contestant, LATTICES},
+    camera, entry, finish, stack_of,
+};
+use hitscan::{CompactKdTree, DualSplit, LatticeMesh, Ray, accel::LatticeAccelerator, asset::Stored, glam::Vec3};
+use semihosting::println;
+
+/// Prints the line of a contestant; whether its hits are the host's.
+#[inline(never)]
+fn measure<A: LatticeAccelerator + Stored<'static>>(counter: &Counter, contestant: &Contestant) -> bool {
+    let scene = contestant.baked.lattice_scene::<A, LatticeMesh<'_>>();
+    let (mut setup, mut closest, mut any, mut shadows, mut stack) = (0, 0, 0, 0, 0);
+    let mut answer = Answer::NONE;
+    for y in 0..camera::HEIGHT {
+        let mut rays = [Ray::new(Vec3::ZERO, Vec3::Z); camera::WIDTH as usize];
+        rays.iter_mut().zip(camera::row(y)).for_each(|(place, ray)| *place = ray);
+        for ray in &rays {
+            let (mut hit, mut shadow) = (None, false);
+            setup += counter.instructions(|| _ = black_box(scene.space().ray(ray)));
+            closest += counter.instructions(|| hit = scene.closest_hit(ray));
+            answer.add(hit);
+            any += counter.instructions(|| shadow = scene.any_hit(ray));
+            shadows += u32::from(shadow);
+        }
+        if y % 8 == 0 {
+            stack = stack.max(stack_of(&mut || _ = black_box(scene.closest_hit(&rays[32]))));
+        }
+    }
+    let rays = u64::from(answer.rays);
+    let bytes = contestant.bytes as f32 / contestant.triangles as f32;
+    let [closest, any, setup] = [closest, any, setup].map(|sum| sum / rays);
+    println!(
+        "{:5} {:<24} {bytes:6.2} B/tri {closest:6} closest {any:6} any, of it set-up {setup:6} {stack:5} B of stack",
+        contestant.triangles, contestant.name,
+    );
+    answer == contestant.baked.answer && shadows == answer.hits
+}
+
+#[entry]
+fn main() -> ! {
+    let counter = Counter::new();
+    let mut same = true;
+    for contestant in black_box(LATTICES) {
+        same &= match contestant.name.split(' ').next() {
+            Some("kdtree-compact") => measure::<CompactKdTree>(&counter, contestant),
+            _ => measure::<DualSplit>(&counter, contestant),
+        };
+    }
+    finish(same)
+}
