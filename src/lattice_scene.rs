@@ -124,13 +124,16 @@ impl<A: LatticeAccelerator, P: LatticeTriangles> LatticeScene<A, P> {
     /// The first hit of the ray.
     #[must_use]
     pub fn closest_hit(&self, ray: &Ray) -> Option<Hit> {
-        self.closest_hit_along(&self.space.ray(ray)?)
+        // Kept where it was made: to move it would take as long as a node.
+        let ray = self.space.ray(ray);
+        self.closest_hit_along(ray.as_ref()?)
     }
 
     /// Whether the ray hits anything: for shadows and visibility, cheaper than the closest hit.
     #[must_use]
     pub fn any_hit(&self, ray: &Ray) -> bool {
-        self.space.ray(ray).is_some_and(|ray| self.any_hit_along(&ray))
+        let ray = self.space.ray(ray);
+        ray.as_ref().is_some_and(|ray| self.any_hit_along(ray))
     }
 
     /// The first hit of a ray in whole numbers, made by the [`space`](Self::space) of this scene.

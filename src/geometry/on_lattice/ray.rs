@@ -1,3 +1,4 @@
+use super::space::Scale;
 use crate::geometry::{Axis, Ray};
 
 /// The number of the last plane.
@@ -33,8 +34,10 @@ pub struct LatticeRay {
     /// The whole depths between which the ray is in the lattice.
     pub(crate) inside: (i32, i32),
     pub(crate) mask: u32,
-    /// The number of the plane where t is 0, and t per plane.
-    parameter: (f32, f32),
+    /// The planes of the major axis.
+    scale: Scale,
+    /// The coordinate of the origin, and the direction, along the major axis.
+    line: (f32, f32),
     /// The parameters between which hits count.
     limits: (f32, f32),
 }
@@ -119,7 +122,7 @@ impl LatticeRay {
     pub(super) const FRACTION: i32 = 14;
 
     /// The ray along `line`, for some depths in 2^-8; `None` if it misses the lattice.
-    pub(super) fn new(line: &Line, depths: (i32, i32), parameter: (f32, f32), ray: &Ray) -> Option<Self> {
+    pub(super) fn new(line: &Line, depths: (i32, i32), scale: &Scale, ray: &Ray) -> Option<Self> {
         let Line { major, descends, crossings: [(x, x_slope), (y, y_slope)] } = *line;
         let anchor = [anchor(x, x_slope)?, anchor(y, y_slope)?];
         let (first, second) = (major.next(), major.next().next());
@@ -134,6 +137,9 @@ impl LatticeRay {
             inside.0 = inside.0.max(view.entry(from as u32));
             inside.1 = inside.1.min(view.exit(until as u32));
         }
+        if inside.0 > inside.1 {
+            return None;
+        }
         Some(Self {
             views,
             descending: bits * 0x1111_1111,
@@ -143,18 +149,18 @@ impl LatticeRay {
             depths,
             inside,
             mask: ray.mask,
-            parameter,
+            scale: *scale,
+            line: (major.of(ray.origin), major.of(ray.direction)),
             limits: (ray.t_min, ray.t_max),
         })
-        .filter(|ray| ray.inside.0 <= ray.inside.1)
     }
 
     /// The ray's parameter at a depth in 2^-8.
     pub(crate) fn parameter(&self, depth: i32) -> f32 {
         let [.., major] = self.axes;
         let plane = if self.views[major as usize].descends() { (LAST << 8) - depth } else { depth };
-        let (start, inverse) = self.parameter;
-        let t = (plane as f32 * (1.0 / 256.0) - start) * inverse;
+        let (origin, direction) = self.line;
+        let t = (self.scale.position(plane) - origin) / direction;
         let t = if t < self.limits.0 { self.limits.0 } else { t };
         if t > self.limits.1 { self.limits.1 } else { t }
     }
