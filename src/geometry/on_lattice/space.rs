@@ -1,9 +1,11 @@
+use glam::Vec3;
+
 use super::{
     LatticeRay,
     fixed::{Scaled, high, reciprocal, shifted},
     ray::{LAST, Line},
 };
-use crate::geometry::{Aabb, Axis, Lattice, Ray, in_range};
+use crate::geometry::{Aabb, Axis, Lattice, MAX_COORDINATE, Ray};
 
 /// The coordinates in which the planes of a lattice of 16 bits are whole numbers.
 ///
@@ -74,7 +76,7 @@ impl LatticeSpace {
     /// Made in integers, too, but for three differences and, where the interval has them, ends other than 0 and infinity.
     #[must_use]
     pub fn ray(&self, ray: &Ray) -> Option<LatticeRay> {
-        if !(in_range(ray.origin) && in_range(ray.direction) && ray.t_min <= ray.t_max) {
+        if !(is_in_range(ray.origin) && is_in_range(ray.direction) && ray.t_min <= ray.t_max) {
             return None;
         }
         let speed = |axis: Axis| Scaled::new(axis.of(ray.direction)).times(self.axes[axis as usize].density);
@@ -118,6 +120,12 @@ impl LatticeSpace {
         let end = if ray.t_max == f32::INFINITY { LAST << 8 } else { depth(ray.t_max) };
         LatticeRay::new(&line, (start, end), &scale, ray)
     }
+}
+
+/// Whether all components are finite and at most [`MAX_COORDINATE`]: magnitudes are ordered as their bits are.
+fn is_in_range(v: Vec3) -> bool {
+    let fits = |x: f32| x.to_bits() & 0x7fff_ffff <= MAX_COORDINATE.to_bits();
+    fits(v.x) & fits(v.y) & fits(v.z)
 }
 
 /// The first axis along which the speed is greatest; none if it is 0 along all.
