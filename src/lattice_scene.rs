@@ -138,6 +138,7 @@ impl<A: LatticeAccelerator, P: LatticeTriangles> LatticeScene<A, P> {
 
     /// The first hit of a ray in whole numbers, made by the [`space`](Self::space) of this scene.
     #[must_use]
+    #[inline(never)] // What a walk keeps on the stack is not there yet while a ray is made.
     pub fn closest_hit_along(&self, ray: &LatticeRay) -> Option<Hit> {
         let (from, mut best) = ray.depths;
         // No primitive has the number behind all.
@@ -162,6 +163,7 @@ impl<A: LatticeAccelerator, P: LatticeTriangles> LatticeScene<A, P> {
 
     /// As [`any_hit`](Self::any_hit), for a ray in whole numbers, made by the [`space`](Self::space) of this scene.
     #[must_use]
+    #[inline(never)]
     pub fn any_hit_along(&self, ray: &LatticeRay) -> bool {
         let mut walk = self.accelerator.walk(ray);
         while let Some(leaf) = walk.next_leaf(ray, ray.depths.1 >> 8) {

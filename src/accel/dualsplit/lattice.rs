@@ -14,28 +14,26 @@ use crate::{
 pub struct DualSplitWalk<'a> {
     nodes: &'a [u32],
     references: References<'a>,
-    /// The whole at first, none behind a leaf.
-    next: Option<LatticeSegment>,
-    /// Far children, the nearest on top.
+    /// The whole at first, then far children, the nearest on top.
     waiting: LatticeWaiting<MAX_DEPTH>,
 }
 
 impl<'a> LatticeAccelerator for DualSplit<'a> {
     type Walk = DualSplitWalk<'a>;
 
-    #[inline]
+    #[inline(always)]
     fn walk(&self, ray: &LatticeRay) -> DualSplitWalk<'a> {
-        let (nodes, references) = (self.nodes, self.references);
-        DualSplitWalk { nodes, references, next: Some(LatticeSegment::whole(ray)), waiting: LatticeWaiting::new() }
+        DualSplitWalk { nodes: self.nodes, references: self.references, waiting: LatticeWaiting::new(ray) }
     }
 }
 
 impl<'a> LatticeWalk for DualSplitWalk<'a> {
     type Leaf = Leaf<'a>;
 
+    #[inline(never)]
     fn next_leaf(&mut self, ray: &LatticeRay, depth: i32) -> Option<Leaf<'a>> {
         let nodes = self.nodes;
-        let mut cell = self.next.take().or_else(|| self.waiting.pop(depth))?;
+        let mut cell = self.waiting.pop(depth)?;
         loop {
             let head = Head::from_word(*nodes.get(cell.node as usize)?);
             let axis = head.axis_or_leaf();
@@ -47,7 +45,7 @@ impl<'a> LatticeWalk for DualSplitWalk<'a> {
             if head.is_carve() {
                 cell.node = child;
                 for (head, plane) in [(head, planes & 0xffff), (head.turned(), planes >> 16)] {
-                    let view = &ray.views[head.axis_or_leaf() as usize];
+                    let view = ray.views.get(head.axis_or_leaf() as usize)?;
                     if head.is_upper() == head.is_descended(ray.descending) {
                         cell.enter = view.entry(plane).max(cell.enter);
                     } else {
@@ -64,7 +62,7 @@ impl<'a> LatticeWalk for DualSplitWalk<'a> {
             let descended = head.is_descended(ray.descending);
             let (planes, near, far) =
                 if descended { (planes.rotate_left(16), head.right(), child) } else { (planes, child, head.right()) };
-            let view = &ray.views[axis as usize];
+            let view = ray.views.get(axis as usize)?;
             let exit = view.exit(planes & 0xffff);
             if exit < cell.enter {
                 cell.node = far;

@@ -1,4 +1,3 @@
-use super::space::Scale;
 use crate::geometry::{Axis, Ray};
 
 /// The number of the last plane.
@@ -19,8 +18,8 @@ const ALONG: i32 = 16;
 /// A ray in the whole numbers of a lattice: see [`LatticeSpace::ray`](super::LatticeSpace::ray).
 #[derive(Clone, Copy, Debug)]
 pub struct LatticeRay {
-    /// Per axis, the depth of its planes; the fourth is there so that an index of two bits needs no check.
-    pub(crate) views: [View; 4],
+    /// Per axis, the depth of its planes.
+    pub(crate) views: [View; 3],
     /// A bit per axis along which the ray meets higher numbers first, repeated every four bits.
     pub(crate) descending: u32,
     /// The axes in cyclic order, the major one last.
@@ -32,10 +31,10 @@ pub struct LatticeRay {
     /// The depths between which hits count, both included, in 2^-8 planes.
     pub(crate) depths: (i32, i32),
     /// The whole depths between which the ray is in the lattice.
-    pub(crate) inside: (i32, i32),
+    pub(crate) inside: (u16, u16),
     pub(crate) mask: u32,
-    /// The planes of the major axis.
-    scale: Scale,
+    /// The coordinate of the major axis's plane 0, and the distance of its planes.
+    planes: (f32, f32),
     /// The coordinate of the origin, and the direction, along the major axis.
     line: (f32, f32),
     /// The parameters between which hits count.
@@ -122,17 +121,13 @@ impl LatticeRay {
     pub(super) const FRACTION: i32 = 14;
 
     /// The ray along `line`, for some depths in 2^-8; `None` if it misses the lattice.
-    pub(super) fn new(line: &Line, depths: (i32, i32), scale: &Scale, ray: &Ray) -> Option<Self> {
+    #[inline(always)]
+    pub(super) fn new(line: &Line, depths: (i32, i32), planes: (f32, f32), ray: &Ray) -> Option<Self> {
         let Line { major, descends, crossings: [(x, x_slope), (y, y_slope)] } = *line;
         let anchor = [anchor(x, x_slope)?, anchor(y, y_slope)?];
-        let (first, second) = (major.next(), major.next().next());
-        let mut views = [View::along(descends); 4];
-        views[first as usize] = View::across(x, x_slope, descends);
-        views[second as usize] = View::across(y, y_slope, descends);
-        let [vx, vy, vz, _] = &views;
-        let bits = u32::from(vx.descends()) | u32::from(vy.descends()) << 1 | u32::from(vz.descends()) << 2;
+        let (first, second) = (View::across(x, x_slope, descends), View::across(y, y_slope, descends));
         let mut inside = ((depths.0 >> 8).max(0), (depths.1 >> 8).min(LAST));
-        for view in [&views[first as usize], &views[second as usize]] {
+        for view in [&first, &second] {
             let (from, until) = if view.descends() { (LAST, 0) } else { (0, LAST) };
             inside.0 = inside.0.max(view.entry(from as u32));
             inside.1 = inside.1.min(view.exit(until as u32));
@@ -140,16 +135,25 @@ impl LatticeRay {
         if inside.0 > inside.1 {
             return None;
         }
+        // The two axes follow the major one.
+        let along = View::along(descends);
+        let views = match major {
+            Axis::X => [along, first, second],
+            Axis::Y => [second, along, first],
+            Axis::Z => [first, second, along],
+        };
+        let [vx, vy, vz] = &views;
+        let bits = u32::from(vx.descends()) | u32::from(vy.descends()) << 1 | u32::from(vz.descends()) << 2;
         Some(Self {
             views,
             descending: bits * 0x1111_1111,
-            axes: [first, second, major],
+            axes: [major.next(), major.next().next(), major],
             slope: [x_slope, y_slope],
             anchor,
             depths,
-            inside,
+            inside: (inside.0 as u16, inside.1 as u16),
             mask: ray.mask,
-            scale: *scale,
+            planes,
             line: (major.of(ray.origin), major.of(ray.direction)),
             limits: (ray.t_min, ray.t_max),
         })
@@ -160,7 +164,8 @@ impl LatticeRay {
         let [.., major] = self.axes;
         let plane = if self.views[major as usize].descends() { (LAST << 8) - depth } else { depth };
         let (origin, direction) = self.line;
-        let t = (self.scale.position(plane) - origin) / direction;
+        let (first, step) = self.planes;
+        let t = (first + plane as f32 * (step * (1.0 / 256.0)) - origin) / direction;
         let t = if t < self.limits.0 { self.limits.0 } else { t };
         if t > self.limits.1 { self.limits.1 } else { t }
     }

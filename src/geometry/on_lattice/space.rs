@@ -22,7 +22,7 @@ pub struct LatticeSpace {
 
 /// One axis of a space.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Scale {
+struct Scale {
     /// Where plane 0 is.
     first: f32,
     /// Where the middle plane is.
@@ -34,12 +34,6 @@ pub(super) struct Scale {
 }
 
 impl Scale {
-    /// Where a plane is, given in 2^-8.
-    #[inline]
-    pub(super) fn position(&self, plane: i32) -> f32 {
-        self.first + plane as f32 * (self.step * (1.0 / 256.0))
-    }
-
     /// The plane at a position relative to the middle one, in 2^-8, within the lattice and one beyond.
     fn plane(&self, from_middle: Scaled) -> i32 {
         (from_middle.times(self.density).in_units(-8).saturating_add(MIDDLE << 8)).clamp(-1, (LAST + 1) << 8)
@@ -108,7 +102,7 @@ impl LatticeSpace {
         let scale = self.axes[major as usize];
         let (from, to) = (major.of(ray.origin), major.of(ray.direction));
         let depth = |t: f32| {
-            let plane = if t == 0.0 {
+            let plane = if t.to_bits() << 1 == 0 {
                 shifted(start, unit + 8).saturating_add(MIDDLE << 8).clamp(-1, (LAST + 1) << 8)
             } else {
                 let end = from + t * to - scale.middle;
@@ -116,9 +110,9 @@ impl LatticeSpace {
             };
             if descends { (LAST << 8) - plane } else { plane }
         };
-        let start = if ray.t_min == f32::NEG_INFINITY { 0 } else { depth(ray.t_min) };
-        let end = if ray.t_max == f32::INFINITY { LAST << 8 } else { depth(ray.t_max) };
-        LatticeRay::new(&line, (start, end), &scale, ray)
+        let start = if ray.t_min.to_bits() == f32::NEG_INFINITY.to_bits() { 0 } else { depth(ray.t_min) };
+        let end = if ray.t_max.to_bits() == f32::INFINITY.to_bits() { LAST << 8 } else { depth(ray.t_max) };
+        LatticeRay::new(&line, (start, end), (scale.first, scale.step), ray)
     }
 }
 

@@ -17,28 +17,26 @@ use crate::{
 pub struct CompactKdWalk<'a> {
     nodes: &'a [u32],
     references: References<'a>,
-    /// The whole at first, none behind a leaf.
-    next: Option<LatticeSegment>,
-    /// Far children, the nearest on top.
+    /// The whole at first, then far children, the nearest on top.
     waiting: LatticeWaiting<MAX_DEPTH>,
 }
 
 impl<'a> LatticeAccelerator for CompactKdTree<'a> {
     type Walk = CompactKdWalk<'a>;
 
-    #[inline]
+    #[inline(always)]
     fn walk(&self, ray: &LatticeRay) -> CompactKdWalk<'a> {
-        let (nodes, references) = (self.nodes, self.references);
-        CompactKdWalk { nodes, references, next: Some(LatticeSegment::whole(ray)), waiting: LatticeWaiting::new() }
+        CompactKdWalk { nodes: self.nodes, references: self.references, waiting: LatticeWaiting::new(ray) }
     }
 }
 
 impl<'a> LatticeWalk for CompactKdWalk<'a> {
     type Leaf = Leaf<'a>;
 
+    #[inline(never)]
     fn next_leaf(&mut self, ray: &LatticeRay, depth: i32) -> Option<Leaf<'a>> {
         let nodes = self.nodes;
-        let mut cell = self.next.take().or_else(|| self.waiting.pop(depth))?;
+        let mut cell = self.waiting.pop(depth)?;
         loop {
             let node = Node::from_word(*nodes.get(cell.node as usize)?);
             let axis = node.axis_or_leaf();
@@ -51,7 +49,7 @@ impl<'a> LatticeWalk for CompactKdWalk<'a> {
             }
             // The child on the ray's side first.
             let descended = node.is_descended(ray.descending);
-            let (entry, exit) = ray.views[axis as usize].depths(node.plane() << 2);
+            let (entry, exit) = ray.views.get(axis as usize)?.depths(node.plane() << 2);
             if node.is_cut() {
                 // One child: the cell shrinks to it, or the ray passes it by.
                 if node.is_empty_on_the_right() != descended {
