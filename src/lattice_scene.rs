@@ -67,6 +67,13 @@ pub struct LatticeScene<A, P> {
     space: LatticeSpace,
 }
 
+/// The closest hit so far, as depth and number.
+#[derive(Clone, Copy)]
+struct Best {
+    depth: i32,
+    number: u32,
+}
+
 impl<'a> Asset<'a> {
     /// As [`scene`](Self::scene), in whole numbers.
     ///
@@ -140,25 +147,13 @@ impl<A: LatticeAccelerator, P: LatticeTriangles> LatticeScene<A, P> {
     #[must_use]
     #[inline(never)] // What a walk keeps on the stack is not there yet while a ray is made.
     pub fn closest_hit_along(&self, ray: &LatticeRay) -> Option<Hit> {
-        let (from, mut best) = ray.depths;
         // No primitive has the number behind all.
-        let mut closest = u32::MAX;
+        let mut best = Best { depth: ray.depths.1, number: u32::MAX };
         let mut walk = self.accelerator.walk(ray);
-        while let Some(leaf) = walk.next_leaf(ray, best >> 8) {
-            for index in leaf {
-                if let Some(Depth { depth, front }) = self.visible(index, ray).and_then(|mesh| ray.crossing(mesh))
-                    && self.shows(front)
-                    && from <= depth
-                    && depth <= best
-                {
-                    let number = self.triangles.number(index);
-                    if depth < best || number < closest {
-                        (best, closest) = (depth, number);
-                    }
-                }
-            }
+        while let Some(leaf) = walk.next_leaf(ray, best.depth >> 8) {
+            best = self.closest_in(leaf, ray, best);
         }
-        (closest != u32::MAX).then(|| Hit { t: ray.parameter(best), primitive: closest })
+        (best.number != u32::MAX).then(|| Hit { t: ray.parameter(best.depth), primitive: best.number })
     }
 
     /// As [`any_hit`](Self::any_hit), for a ray in whole numbers, made by the [`space`](Self::space) of this scene.
@@ -167,14 +162,38 @@ impl<A: LatticeAccelerator, P: LatticeTriangles> LatticeScene<A, P> {
     pub fn any_hit_along(&self, ray: &LatticeRay) -> bool {
         let mut walk = self.accelerator.walk(ray);
         while let Some(leaf) = walk.next_leaf(ray, ray.depths.1 >> 8) {
-            for index in leaf {
-                let side = self.visible(index, ray).and_then(|corners| ray.crosses(corners, ray.depths));
-                if side.is_some_and(|front| self.shows(front)) {
-                    return true;
-                }
+            if self.any_in(leaf, ray) {
+                return true;
             }
         }
         false
+    }
+
+    /// The best hit so far, or a better one with the primitives of a leaf.
+    #[inline(never)] // Not within the walk: each would keep the other's numbers on the stack.
+    fn closest_in(&self, leaf: impl Iterator<Item = u32>, ray: &LatticeRay, mut best: Best) -> Best {
+        for index in leaf {
+            if let Some(Depth { depth, front }) = self.visible(index, ray).and_then(|corners| ray.crossing(corners))
+                && self.shows(front)
+                && ray.depths.0 <= depth
+                && depth <= best.depth
+            {
+                let number = self.triangles.number(index);
+                if depth < best.depth || number < best.number {
+                    best = Best { depth, number };
+                }
+            }
+        }
+        best
+    }
+
+    /// Whether the ray hits a primitive of a leaf.
+    #[inline(never)]
+    fn any_in(&self, mut leaf: impl Iterator<Item = u32>, ray: &LatticeRay) -> bool {
+        leaf.any(|index| {
+            let side = self.visible(index, ray).and_then(|corners| ray.crosses(corners, ray.depths));
+            side.is_some_and(|front| self.shows(front))
+        })
     }
 
     /// The corners of a triangle that the ray may see.

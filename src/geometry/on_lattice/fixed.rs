@@ -23,6 +23,12 @@ impl Scaled {
         Self { mantissa: if bits >> 31 != 0 { -magnitude } else { magnitude }, exponent: exponent - 157 }
     }
 
+    /// The product, of 28 bits or more in magnitude: for sums.
+    #[inline]
+    pub(super) const fn roughly_times(self, factor: Self) -> Self {
+        Self { mantissa: high(self.mantissa, factor.mantissa), exponent: self.exponent + factor.exponent + 32 }
+    }
+
     /// The product with what is positive, cut to 30 bits.
     #[inline]
     pub(super) const fn times(self, factor: Self) -> Self {

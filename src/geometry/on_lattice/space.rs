@@ -80,11 +80,11 @@ impl LatticeSpace {
         // From the middle of the lattice to the origin, all in the unit that the farthest needs.
         let from_middle = |axis: Axis| {
             let scale = &self.axes[axis as usize];
-            Scaled::new(axis.of(ray.origin) - scale.middle).times(scale.density)
+            Scaled::new(axis.of(ray.origin) - scale.middle).roughly_times(scale.density)
         };
         let origin = [from_middle(Axis::X), from_middle(Axis::Y), from_middle(Axis::Z)];
         let [x, y, z] = &origin;
-        let unit = x.exponent.max(y.exponent).max(z.exponent).max(-30) + 2;
+        let unit = x.exponent.max(y.exponent).max(z.exponent).max(-30);
         let start = origin[major as usize].in_units(unit);
         let inverse = reciprocal(speeds[major as usize].mantissa.saturating_abs());
         let cross = |axis: Axis| {

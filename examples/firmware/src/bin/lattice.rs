@@ -24,7 +24,7 @@ fn measure<A: LatticeAccelerator + Stored<'static>>(counter: &Counter, contestan
         rays.iter_mut().zip(camera::row(y)).for_each(|(place, ray)| *place = ray);
         for ray in &rays {
             let (mut hit, mut shadow) = (None, false);
-            setup += counter.instructions(|| _ = black_box(scene.space().ray(ray)));
+            setup += counter.instructions(|| _ = black_box(&scene.space().ray(ray)));
             closest += counter.instructions(|| hit = scene.closest_hit(ray));
             answer.add(hit);
             any += counter.instructions(|| shadow = scene.any_hit(ray));
