@@ -232,6 +232,42 @@ fn hits_are_those_of_the_float_scene_to_a_step() {
 }
 
 #[test]
+fn rows_are_as_rays_for_themselves() {
+    let (vertices, triangles) = ball(9);
+    let mesh = Mesh::new(&vertices, &triangles[..]).unwrap();
+    let snapped = bake::lattice(&mesh);
+    let mesh = snapped.mesh(&mesh).unwrap();
+    let scene = LatticeScene::new(List::new(&mesh).unwrap(), &mesh).unwrap();
+    let (mut cast, mut same, mut hits) = (0, 0, 0);
+    for (eye, forward) in [
+        (Vec3::new(0.3, 0.1, -4.0), Vec3::Z),
+        (Vec3::new(0.2, 9.0, 1.0), Vec3::new(0.1, -3.0, 0.0)),
+        (Vec3::ZERO, Vec3::X),
+    ] {
+        for y in 0..40 {
+            let (first, step) = (forward + Vec3::new(-0.5, 0.0, y as f32 / 40.0 - 0.5), Vec3::X / 100.0);
+            let row = scene.space().rays(eye, first, step, 100);
+            assert_eq!(row.len(), 100);
+            for (x, ray) in row.enumerate() {
+                let single = Ray::new(eye, first + step * x as f32);
+                let hit = ray.and_then(|ray| scene.closest_hit_along(&ray));
+                let expected = scene.closest_hit(&single);
+                cast += 1;
+                hits += usize::from(hit.is_some());
+                same += usize::from(match (hit, expected) {
+                    (Some(a), Some(b)) => a.primitive == b.primitive && (a.t - b.t).abs() < 1.0e-3,
+                    (None, None) => true,
+                    _ => false,
+                });
+            }
+        }
+    }
+    assert!(hits * 3 > cast && same * 1000 > cast * 997, "{same} and {hits} of {cast}");
+    assert_eq!(scene.space().rays(Vec3::NAN, Vec3::Z, Vec3::X, 9).count(), 0);
+    assert!(scene.space().rays(Vec3::ZERO, Vec3::ZERO, Vec3::ZERO, 9).all(|ray| ray.is_none()));
+}
+
+#[test]
 fn ties_are_decided_by_the_owners_numbers() {
     let frame = Aabb::new(Vec3::ZERO, Vec3::ONE);
     let numbers = [[0, 0, 30_000], [60_000, 0, 30_000], [0, 60_000, 30_000_u16]];

@@ -21,7 +21,7 @@ pub use bounding::{Bounding, BoundingVolume};
 pub use lattice::Lattice;
 pub use obb::Obb;
 pub(crate) use on_lattice::Depth;
-pub use on_lattice::{LatticeRay, LatticeSpace};
+pub use on_lattice::{LatticeRay, LatticeRays, LatticeSpace};
 pub(crate) use ray::{AxisView, beyond, slack};
 pub use ray::{PreparedRay, Ray};
 pub use sphere::Sphere;

@@ -26,6 +26,9 @@ impl Scaled {
     /// The product, of 28 bits or more in magnitude: for sums.
     #[inline]
     pub(super) const fn roughly_times(self, factor: Self) -> Self {
+        if self.mantissa == 0 {
+            return self;
+        }
         Self { mantissa: high(self.mantissa, factor.mantissa), exponent: self.exponent + factor.exponent + 32 }
     }
 

@@ -29,9 +29,11 @@
 
 mod fixed;
 mod ray;
+mod rays;
 mod space;
 mod triangle;
 
 pub use ray::LatticeRay;
+pub use rays::LatticeRays;
 pub use space::LatticeSpace;
 pub(crate) use triangle::Depth;

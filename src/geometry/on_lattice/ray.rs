@@ -1,4 +1,4 @@
-use crate::geometry::{Axis, Ray};
+use crate::geometry::Axis;
 
 /// The number of the last plane.
 pub(super) const LAST: i32 = 0xffff;
@@ -116,14 +116,31 @@ pub(super) struct Line {
     pub(super) crossings: [(i32, i32); 2],
 }
 
+/// The hits that count.
+pub(super) struct Interval {
+    /// By their depths, in 2^-8.
+    pub(super) depths: (i32, i32),
+    /// By their parameters.
+    pub(super) limits: (f32, f32),
+}
+
 impl LatticeRay {
     /// Bits behind the point of slopes and crossings.
     pub(super) const FRACTION: i32 = 14;
 
-    /// The ray along `line`, for some depths in 2^-8; `None` if it misses the lattice.
+    /// The ray along `line`; `None` if it misses the lattice.
+    ///
+    /// `planes` are the major axis's: where the first is, and their distance; `along` it are origin and direction.
     #[inline(always)]
-    pub(super) fn new(line: &Line, depths: (i32, i32), planes: (f32, f32), ray: &Ray) -> Option<Self> {
+    pub(super) fn new(
+        line: &Line,
+        interval: &Interval,
+        planes: (f32, f32),
+        along: (f32, f32),
+        mask: u32,
+    ) -> Option<Self> {
         let Line { major, descends, crossings: [(x, x_slope), (y, y_slope)] } = *line;
+        let Interval { depths, limits } = *interval;
         let anchor = [anchor(x, x_slope)?, anchor(y, y_slope)?];
         let (first, second) = (View::across(x, x_slope, descends), View::across(y, y_slope, descends));
         let mut inside = ((depths.0 >> 8).max(0), (depths.1 >> 8).min(LAST));
@@ -136,11 +153,11 @@ impl LatticeRay {
             return None;
         }
         // The two axes follow the major one.
-        let along = View::along(descends);
+        let view = View::along(descends);
         let views = match major {
-            Axis::X => [along, first, second],
-            Axis::Y => [second, along, first],
-            Axis::Z => [first, second, along],
+            Axis::X => [view, first, second],
+            Axis::Y => [second, view, first],
+            Axis::Z => [first, second, view],
         };
         let [vx, vy, vz] = &views;
         let bits = u32::from(vx.descends()) | u32::from(vy.descends()) << 1 | u32::from(vz.descends()) << 2;
@@ -152,10 +169,10 @@ impl LatticeRay {
             anchor,
             depths,
             inside: (inside.0 as u16, inside.1 as u16),
-            mask: ray.mask,
+            mask,
             planes,
-            line: (major.of(ray.origin), major.of(ray.direction)),
-            limits: (ray.t_min, ray.t_max),
+            line: along,
+            limits,
         })
     }
 
