@@ -51,18 +51,24 @@ pub(crate) struct LatticeSegment {
     pub(crate) exit: i32,
 }
 
+impl LatticeSegment {
+    /// The first node, and the part of the ray that is in the lattice.
+    #[inline(always)]
+    pub(crate) fn whole(ray: &LatticeRay) -> Self {
+        let (enter, exit) = ray.inside;
+        Self { node: 0, enter: i32::from(enter), exit: i32::from(exit) }
+    }
+}
+
 /// Segments that wait, the nearest on top, in 8 bytes each: depths in the lattice take 16 bits.
 #[derive(Clone, Debug)]
 pub(crate) struct LatticeWaiting<const N: usize>(heapless::Vec<[u32; 2], N>);
 
 impl<const N: usize> LatticeWaiting<N> {
-    /// The first node, and the part of the ray that is in the lattice.
+    /// None. Not filled where it is made, so that it is made where it stays: to move it would take as long as ten nodes.
     #[inline(always)]
-    pub(crate) fn new(ray: &LatticeRay) -> Self {
-        let mut waiting = Self(heapless::Vec::new());
-        let (enter, exit) = ray.inside;
-        waiting.push(0, i32::from(enter), i32::from(exit));
-        waiting
+    pub(crate) const fn new() -> Self {
+        Self(heapless::Vec::new())
     }
 
     /// Puts one on top; it cannot fail, because no tree is deeper than its stack.

@@ -1,3 +1,5 @@
+use core::mem;
+
 use super::{DualSplit, MAX_DEPTH, node::Head};
 use crate::{
     accel::{
@@ -14,7 +16,9 @@ use crate::{
 pub struct DualSplitWalk<'a> {
     nodes: &'a [u32],
     references: References<'a>,
-    /// The whole at first, then far children, the nearest on top.
+    /// Whether the first node was visited.
+    has_begun: bool,
+    /// Far children, the nearest on top.
     waiting: LatticeWaiting<MAX_DEPTH>,
 }
 
@@ -22,8 +26,13 @@ impl<'a> LatticeAccelerator for DualSplit<'a> {
     type Walk = DualSplitWalk<'a>;
 
     #[inline(always)]
-    fn walk(&self, ray: &LatticeRay) -> DualSplitWalk<'a> {
-        DualSplitWalk { nodes: self.nodes, references: self.references, waiting: LatticeWaiting::new(ray) }
+    fn walk(&self, _ray: &LatticeRay) -> DualSplitWalk<'a> {
+        DualSplitWalk {
+            nodes: self.nodes,
+            references: self.references,
+            has_begun: false,
+            waiting: LatticeWaiting::new(),
+        }
     }
 }
 
@@ -33,7 +42,8 @@ impl<'a> LatticeWalk for DualSplitWalk<'a> {
     #[inline(never)]
     fn next_leaf(&mut self, ray: &LatticeRay, depth: i32) -> Option<Leaf<'a>> {
         let nodes = self.nodes;
-        let mut cell = self.waiting.pop(depth)?;
+        let has_begun = mem::replace(&mut self.has_begun, true);
+        let mut cell = if has_begun { self.waiting.pop(depth)? } else { LatticeSegment::whole(ray) };
         loop {
             let head = Head::from_word(*nodes.get(cell.node as usize)?);
             let axis = head.axis_or_leaf();

@@ -1,3 +1,5 @@
+use core::mem;
+
 use super::{CompactKdTree, node::Node};
 use crate::{
     accel::{
@@ -17,7 +19,9 @@ use crate::{
 pub struct CompactKdWalk<'a> {
     nodes: &'a [u32],
     references: References<'a>,
-    /// The whole at first, then far children, the nearest on top.
+    /// Whether the first node was visited.
+    has_begun: bool,
+    /// Far children, the nearest on top.
     waiting: LatticeWaiting<MAX_DEPTH>,
 }
 
@@ -25,8 +29,13 @@ impl<'a> LatticeAccelerator for CompactKdTree<'a> {
     type Walk = CompactKdWalk<'a>;
 
     #[inline(always)]
-    fn walk(&self, ray: &LatticeRay) -> CompactKdWalk<'a> {
-        CompactKdWalk { nodes: self.nodes, references: self.references, waiting: LatticeWaiting::new(ray) }
+    fn walk(&self, _ray: &LatticeRay) -> CompactKdWalk<'a> {
+        CompactKdWalk {
+            nodes: self.nodes,
+            references: self.references,
+            has_begun: false,
+            waiting: LatticeWaiting::new(),
+        }
     }
 }
 
@@ -36,7 +45,8 @@ impl<'a> LatticeWalk for CompactKdWalk<'a> {
     #[inline(never)]
     fn next_leaf(&mut self, ray: &LatticeRay, depth: i32) -> Option<Leaf<'a>> {
         let nodes = self.nodes;
-        let mut cell = self.waiting.pop(depth)?;
+        let has_begun = mem::replace(&mut self.has_begun, true);
+        let mut cell = if has_begun { self.waiting.pop(depth)? } else { LatticeSegment::whole(ray) };
         loop {
             let node = Node::from_word(*nodes.get(cell.node as usize)?);
             let axis = node.axis_or_leaf();
