@@ -195,7 +195,7 @@ fn anchor(middle: i32, slope: i32) -> Option<i32> {
     const END: i32 = LAST << LatticeRay::FRACTION;
     /// Half of the lattice.
     const HALF: i32 = MIDDLE << LatticeRay::FRACTION;
-    if !(-HALF <= middle && middle <= END + HALF) {
+    if !(-HALF..=END + HALF).contains(&middle) {
         return None;
     }
     let (first, last) = (middle - slope * MIDDLE, middle + slope * (LAST - MIDDLE));

@@ -137,7 +137,7 @@ impl LatticeRay {
         // Below 2^32: the weights sum up to less than 2^16.
         let sum = u * (a - least) + v * (b - least) + w * (c - least);
         let (whole, rest) = (sum / area, sum % area);
-        self.oriented(((least + whole) << 8 | (rest << 8) / area) as i32)
+        self.oriented((((least + whole) << 8) + (rest << 8) / area) as i32)
     }
 }
 
