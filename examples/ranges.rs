@@ -1,9 +1,14 @@
-//! An 8 x 8 range image of a room corner with a ball in it, as a time-of-flight sensor sees it: one table.
+//! What an 8 x 8 time-of-flight sensor sees of a room's corner with a ball in it: depths and angles in one table.
 //!
 //! `cargo run --example ranges`
 
 use hitscan::{
-    Arena, Error, KdTree, Mesh, Ray, Scene, geometry::Sphere, glam::Vec3, kdtree::Options, primitives::Spheres,
+    Arena, Error, KdTree, Mesh, Scene,
+    geometry::Sphere,
+    glam::Vec3,
+    kdtree::Options,
+    primitives::Spheres,
+    sensor::{Pose, RangeSensor, depth_zones},
 };
 
 fn main() -> Result<(), Error> {
@@ -20,18 +25,22 @@ fn main() -> Result<(), Error> {
     let tree = KdTree::build(&room, &mut Arena::new(&mut memory), &Options::small())?;
     let scene = Scene::new(tree, &room)?;
 
-    let eye = Vec3::new(3.0, 1.5, 3.0);
-    for row in 0..8 {
-        for column in 0..8 {
-            let (u, v) = (column as f32 / 7.0 - 0.5, 0.5 - row as f32 / 7.0);
-            let direction = Vec3::new(-1.0 + u * 0.8, v - 0.3, -1.0 - u * 0.8).normalize();
-            match scene.closest_hit(&Ray::new(eye, direction).up_to(8.0)) {
-                Some(hit) => print!("{:5.2}{}", hit.t, if hit.primitive == 6 { '*' } else { ' ' }),
-                None => print!("    - "),
+    let beams = depth_zones::<8, 8>([45_f32.to_radians(); 2]);
+    let sensor = RangeSensor::new(beams.as_flattened()).in_units_of(0.001).within(20.0, 4000.0);
+    let pose = Pose::looking(Vec3::new(3.0, 1.5, 3.0), Vec3::new(1.0, 0.8, 1.0), Vec3::Y);
+    for (zone, echo) in sensor.echoes(&scene, &pose).enumerate() {
+        match echo {
+            Some(echo) => {
+                let mark = if echo.primitive == 6 { '*' } else { ' ' };
+                print!("{:5.0}{mark}{:3.0} ", echo.range, echo.cosine * 100.0);
             }
+            None => print!("    -     "),
         }
-        println!();
+        if zone % 8 == 7 {
+            println!();
+        }
     }
-    println!("metres; * is the ball; {} bytes of tree", tree.as_words().len() * 4);
+    println!("depth in millimetres, * on the ball; cosine of incidence in percent");
+    println!("{} bytes of tree", tree.as_words().len() * 4);
     Ok(())
 }

@@ -164,6 +164,7 @@ pub mod query;
 pub mod scene;
 
 pub mod render;
+pub mod sensor;
 
 #[cfg(feature = "alloc")]
 pub mod bake;

@@ -27,6 +27,12 @@ pub(crate) fn tan(x: f32) -> f32 {
     libm::tanf(x)
 }
 
+/// Sine and cosine of an angle in radians.
+#[inline]
+pub(crate) fn sin_cos(x: f32) -> (f32, f32) {
+    libm::sincosf(x)
+}
+
 /// Largest integer not above `x`.
 #[inline]
 pub(crate) fn floor(x: f32) -> f32 {

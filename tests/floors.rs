@@ -6,7 +6,7 @@
 //! | 1 | `primitives`, `arena`, `asset` |
 //! | 2 | `accel` |
 //! | 3 | `scene`, `lattice_scene`, `query`, `instances` |
-//! | 4 | `render` |
+//! | 4 | `render`, `sensor` |
 //! | 5 | outlets, none of which imports another: `display`, `bake`, `parallel` |
 //!
 //! `error` stands beside them: every floor may import it. It gathers the error types of all floors but the outlets.
@@ -22,7 +22,7 @@ const FLOORS: [&[&str]; 6] = [
     &["primitives", "arena", "asset"],
     &["accel"],
     &["scene", "lattice_scene", "query", "instances"],
-    &["render"],
+    &["render", "sensor"],
     &["display", "bake", "parallel"],
 ];
 

@@ -3,6 +3,8 @@
 #![allow(missing_docs)]
 
 mod common;
+#[path = "instances/deep.rs"]
+mod deep;
 
 use common::{Random, adversarial_mesh, adversarial_ray, bits, boxed, noise, point};
 use hitscan::{
@@ -87,21 +89,32 @@ fn expected(content: &Content, ray: &Ray) -> Vec<Hit> {
     hits
 }
 
+fn bits_of(hits: &[Hit]) -> Vec<Option<(u32, u32)>> {
+    hits.iter().map(|&hit| bits(Some(hit))).collect()
+}
+
+/// Asks in every way.
 fn compare<A: Accelerator, P: Primitives>(scene: &Scene<A, P>, ray: &Ray, expected: &[Hit]) {
     let first = expected.first().copied();
     assert_eq!(bits(scene.closest_hit(ray)), bits(first), "{ray:?}");
     assert_eq!(scene.any_hit(ray), first.is_some(), "{ray:?}");
-    let all: Vec<_> = scene.hits(ray).take(30).map(|hit| bits(Some(hit))).collect();
-    assert_eq!(all, expected.iter().take(30).map(|&hit| bits(Some(hit))).collect::<Vec<_>>(), "{ray:?}");
+    let all: Vec<Hit> = scene.hits(ray).take(30).collect();
+    assert_eq!(bits_of(&all), bits_of(&expected[..expected.len().min(30)]), "{ray:?}");
     let keep = |hit: &Hit| hit.primitive % 2 == 1;
     assert_eq!(bits(scene.closest_hit_where(ray, keep)), bits(expected.iter().copied().find(keep)), "{ray:?}");
-    let mut query = scene.begin(ray);
-    let paused = loop {
-        if let Progress::Done(hit) = query.advance(2) {
-            break hit;
-        }
-    };
-    assert_eq!(bits(paused), bits(first), "{ray:?}");
+    assert_eq!(scene.any_hit_where(ray, keep), expected.iter().any(keep), "{ray:?}");
+    let mut three: heapless::Vec<Hit, 3> = heapless::Vec::new();
+    scene.nearest_hits(ray, &mut three);
+    assert_eq!(bits_of(&three), bits_of(&expected[..expected.len().min(3)]), "{ray:?}");
+    for budget in [1, 2, 5] {
+        let mut query = scene.begin(ray);
+        let paused = loop {
+            if let Progress::Done(hit) = query.advance(budget) {
+                break hit;
+            }
+        };
+        assert_eq!(bits(paused), bits(first), "{budget} {ray:?}");
+    }
 }
 
 fn place<'a, A: Accelerator, P: Primitives>(

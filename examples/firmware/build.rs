@@ -2,28 +2,39 @@
 
 #[path = "src/answer.rs"]
 mod answer;
+#[path = "src/builds.rs"]
+mod builds;
 #[path = "src/camera.rs"]
 mod camera;
+#[path = "bake/contest.rs"]
+mod contest;
+#[path = "src/hash.rs"]
+mod hash;
 #[path = "bake/knot.rs"]
 mod knot;
 #[path = "bake/lattice.rs"]
 mod lattice;
+#[path = "src/picture.rs"]
+mod picture;
+#[path = "src/room.rs"]
+mod room;
 
-use std::{env, error::Error, fmt::Write as _, fs, path::Path};
+use std::{convert::Infallible, env, error::Error, fmt::Write as _, fs, path::Path};
 
 use answer::Answer;
+use embedded_graphics::prelude::*;
+use hash::Hash;
 use hitscan::{
-    KdTree, Mesh, Scene,
-    accel::{List, Plan, Structure},
+    Accelerator, Arena, KdTree, Mesh, Primitives, Scene,
+    accel::Plan,
     bake::{self, Baker},
-    bvh, dualsplit, grid, kdtree,
     kdtree::Options,
-    octree,
 };
 
 fn main() -> Result<(), Box<dyn Error>> {
-    for input in ["build.rs", "bake", "memory", "src/answer.rs", "src/camera.rs"] {
-        println!("cargo:rerun-if-changed={input}");
+    println!("cargo:rerun-if-changed=bake\ncargo:rerun-if-changed=memory");
+    for source in ["answer", "builds", "camera", "hash", "picture", "room"] {
+        println!("cargo:rerun-if-changed=src/{source}.rs");
     }
     let out = env::var("OUT_DIR")?;
     let out = Path::new(&out);
@@ -36,94 +47,87 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     fs::copy(format!("memory/{board}.x"), out.join("memory.x"))?;
     println!("cargo:rustc-link-search={}", out.display());
-
-    let mut code = asset(out, "KNOT", "A torus knot of 1,000 triangles.", (100, 5), &Options::balanced())?;
-    // The micro:bit has 16 kB of RAM: what is built there has 60 triangles.
-    let (along, around) = if board == "microbit" { (10, 3) } else { (100, 5) };
-    code += &asset(out, "REBUILT", "The knot that is also built on the device.", (along, around), &Options::small())?;
-    let triangles = usize::from(along) * usize::from(around) * 2;
-    writeln!(code, "/// Triangles of [`REBUILT`].\npub const REBUILT_TRIANGLES: usize = {triangles};")?;
-    code += &contest(out)?;
-    code += &lattice::contest(out, board == "microbit")?;
-    Ok(fs::write(out.join("baked.rs"), code)?)
-}
-
-/// What `bench` compares.
-fn plans() -> Vec<(&'static str, Plan)> {
-    vec![
-        ("grid small", Plan::Grid(grid::Options::small())),
-        ("grid balanced", Plan::Grid(grid::Options::balanced())),
-        ("grid fast", Plan::Grid(grid::Options::fast())),
-        ("octree balanced", Plan::Octree(octree::Options::balanced())),
-        ("kdtree small", Plan::KdTree(kdtree::Options::small())),
-        ("kdtree balanced", Plan::KdTree(kdtree::Options::balanced())),
-        ("kdtree fast", Plan::KdTree(kdtree::Options::fast())),
-        ("kdtree-compact small", Plan::CompactKdTree(kdtree::Options::small())),
-        ("kdtree-compact balanced", Plan::CompactKdTree(kdtree::Options::balanced())),
-        ("bvh balanced", Plan::Bvh(bvh::Options::balanced())),
-        ("dual-split small", Plan::DualSplit(dualsplit::Options::small())),
-        ("dual-split balanced", Plan::DualSplit(dualsplit::Options::balanced())),
-        ("dual-split fast", Plan::DualSplit(dualsplit::Options::fast())),
-    ]
-}
-
-/// The knots under every plan, in the order of the leaves where there are no references.
-fn contest(out: &Path) -> Result<String, Box<dyn Error>> {
-    let mut code = "/// What `bench` compares.\npub static CONTEST: &[Contestant] = &[\n".to_string();
-    for (size, (along, around)) in [("1k", (100, 5)), ("5k", (250, 10))] {
-        let (vertices, triangles) = knot::mesh(along, around);
-        let mesh = Mesh::new(&vertices, triangles.as_slice())?;
-        for (name, plan) in plans() {
-            let kind = plan.kind().ok_or("every plan has a kind")?;
-            let mut words = bake::build(&mesh, &plan)?;
-            let mut corners = bake::reorder(&mesh, &(0..mesh.indices().len() as u32).collect::<Vec<_>>());
-            if let Some((ordered, order)) = bake::ordered(&Structure::open(kind, &words)?) {
-                corners = bake::reorder(&mesh, &order);
-                words = ordered;
-            }
-            let mesh = Mesh::new(&vertices, corners.as_slice())?;
-            let structure = Structure::open(kind, &words)?;
-            let asset = Baker::new().mesh(&mesh).structure(structure).finish();
-            let file = out.join(format!("{size} {name}.hits"));
-            fs::write(&file, asset.into_iter().flat_map(u32::to_le_bytes).collect::<Vec<_>>())?;
-            let scene = Scene::new(List::new(&mesh)?, &mesh)?;
-            let mut answer = Answer::NONE;
-            for ray in (0..camera::HEIGHT).flat_map(camera::row) {
-                answer.add(scene.closest_hit(&ray));
-            }
-            let triangles = corners.len();
-            let bytes = words.len() * 4;
-            writeln!(
-                code,
-                "    Contestant {{ name: {name:?}, triangles: {triangles}, bytes: {bytes}, baked: Baked {{ bytes: \
-                 hitscan::include_asset!({file:?}), answer: {answer:?} }} }},"
-            )?;
-        }
+    let small = board == "microbit";
+    if small {
+        println!("cargo:rustc-cfg=small");
     }
-    Ok(code + "];\n")
+    // The micro:bit has 16 kB of RAM, and the others without an FPU little patience.
+    let fpu = target.ends_with("hf") || target.contains("imafc");
+    let model = if small {
+        (10, 3)
+    } else if fpu {
+        (100, 5)
+    } else {
+        (20, 4)
+    };
+    // A micro:bit's 256 kB hold all programs at once with the smaller tree.
+    let options = if small { Options::small() } else { Options::balanced() };
+    let code = [knots(out, &options, model)?, ranges()?, contest::contest(out, small)?, lattice::contest(out, small)?];
+    Ok(fs::write(out.join("baked.rs"), code.concat())?)
 }
 
-/// Writes a knot and its tree to a file; the `static` that includes it beside the answer to the camera's rays.
-fn asset(
-    out: &Path,
-    name: &str,
-    doc: &str,
-    (along, around): (u16, u16),
-    options: &Options,
-) -> Result<String, Box<dyn Error>> {
-    let (vertices, triangles) = knot::mesh(along, around);
+/// The knot in flash, its pictures, and the knot that is built on the device with the hashes of what is built.
+fn knots(out: &Path, options: &Options, (along, around): (u16, u16)) -> Result<String, Box<dyn Error>> {
+    let mut code = String::new();
+    let (vertices, triangles) = knot::mesh(100, 5);
     let mesh = Mesh::new(&vertices, triangles.as_slice())?;
     let tree = bake::build(&mesh, &Plan::KdTree(*options))?;
-    let tree = KdTree::open(&tree)?;
-    let words = Baker::new().mesh(&mesh).structure(tree).finish();
+    let scene = Scene::new(KdTree::open(&tree)?, mesh)?;
+    code += &asset(out, "KNOT", "A torus knot of 1,000 triangles.", &scene)?;
+    let (mut color, mut binary) = (Hash::NONE, Hash::NONE);
+    let Ok(()) = picture::color(&scene, |strip| -> Result<(), Infallible> {
+        strip.iter().for_each(|pixel| color.add(pixel.into_storage().into()));
+        Ok(())
+    });
+    let Ok(()) = picture::binary(&scene, |strip| -> Result<(), Infallible> {
+        strip
+            .chunks_exact(8)
+            .for_each(|eight| binary.add(eight.iter().fold(0, |byte, pixel| byte << 1 | u32::from(pixel.is_off()))));
+        Ok(())
+    });
+    writeln!(code, "/// The colour picture.\npub const COLOR_PICTURE: Hash = {color:?};")?;
+    writeln!(code, "/// The picture in black and white.\npub const BINARY_PICTURE: Hash = {binary:?};")?;
+
+    let (vertices, triangles) = knot::mesh(along, around);
+    let mesh = Mesh::new(&vertices, triangles.as_slice())?;
+    let tree = bake::build(&mesh, &Plan::KdTree(Options::small()))?;
+    code +=
+        &asset(out, "MODEL", "The knot over which structures are built.", &Scene::new(KdTree::open(&tree)?, mesh)?)?;
+    let mut hashes = vec![];
+    for build in builds::BUILDS {
+        let mut memory = vec![0; (build.words)(mesh.len() as usize)];
+        let words = (build.build)(&mesh, &mut Arena::new(&mut memory));
+        let words = words.map_err(|error| format!("{}: {error}", build.name))?;
+        hashes.push(Hash::of(words.iter().copied()));
+    }
+    writeln!(code, "/// The words of [`BUILDS`].\npub const HASHES: [Hash; BUILDS.len()] = {hashes:?};")?;
+    Ok(code)
+}
+
+/// What the sensor reports.
+fn ranges() -> Result<String, Box<dyn Error>> {
+    let mut memory = [0; 1024];
+    let room = room::Room::new(&mut Arena::new(&mut memory))?;
+    let mut hash = Hash::NONE;
+    for frame in 0..room::FRAMES {
+        room.ranges(frame)?.into_iter().for_each(|range| hash.add(range.map_or(u32::MAX, u32::from)));
+    }
+    Ok(format!("/// All ranges of the sensor.\npub const RANGES: Hash = {hash:?};\n"))
+}
+
+/// What the camera's rays hit.
+fn camera_answer<A: Accelerator, P: Primitives>(scene: &Scene<A, P>) -> Answer {
+    let mut answer = Answer::NONE;
+    (0..camera::HEIGHT).flat_map(camera::row).for_each(|ray| answer.add(scene.closest_hit(&ray)));
+    answer
+}
+
+/// Writes a scene to a file; the `static` that includes it beside the answer to the camera's rays.
+fn asset(out: &Path, name: &str, doc: &str, scene: &Scene<KdTree, Mesh>) -> Result<String, Box<dyn Error>> {
+    let words = Baker::new().mesh(scene.primitives()).structure(*scene.accelerator()).finish();
     let file = out.join(name).with_extension("hits");
     fs::write(&file, words.into_iter().flat_map(u32::to_le_bytes).collect::<Vec<_>>())?;
-
-    let scene = Scene::new(tree, &mesh)?;
-    let mut answer = Answer::NONE;
-    for ray in (0..camera::HEIGHT).flat_map(camera::row) {
-        answer.add(scene.closest_hit(&ray));
-    }
+    let answer = camera_answer(scene);
     let baked = format!("Baked {{ bytes: hitscan::include_asset!({file:?}), answer: {answer:?} }}");
     Ok(format!("/// {doc}\npub static {name}: Baked = {baked};\n"))
 }

@@ -6,39 +6,42 @@ pub struct Leaf<'a> {
     references: References<'a>,
 }
 
-/// A structure's references, in words.
+/// A structure's references, in words; where there are none, each is its own number.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct References<'a> {
-    words: &'a [u32],
-    /// 1 if there are two per word, the lower half first; 0 if one. As a number, so that it needs no branch.
-    halves: u32,
+pub(crate) enum References<'a> {
+    /// Two per word, the lower half first.
+    Narrow(&'a [u16]),
+    /// One per word.
+    Wide(&'a [u32]),
 }
 
 impl<'a> References<'a> {
     /// Each reference is its own number: for primitives that stand in the order of the leaves.
-    pub(crate) const IDENTITY: Self = Self::wide(&[]);
+    pub(crate) const IDENTITY: Self = Self::Wide(&[]);
 
     /// Two per word.
     pub(crate) const fn narrow(words: &'a [u32]) -> Self {
-        Self { words, halves: 1 }
+        Self::Narrow(bytemuck::must_cast_slice(words))
     }
 
     /// One per word.
-    #[inline(always)]
     pub(crate) const fn wide(words: &'a [u32]) -> Self {
-        Self { words, halves: 0 }
+        Self::Wide(words)
     }
 
     /// The number behind a reference.
     #[inline(always)]
     pub(crate) fn get(&self, index: u32) -> u32 {
-        match self.words.get((index >> self.halves) as usize) {
-            Some(word) => word >> (16 * (index & self.halves)) & u32::MAX >> (16 * self.halves),
-            // Checked when opened: only of the identity there are no words.
-            None => index,
+        // Checked when opened: only of the identity there are no words.
+        match self {
+            Self::Narrow(halves) => halves.get((index ^ SECOND_FIRST) as usize).map_or(index, |&half| u32::from(half)),
+            Self::Wide(words) => words.get(index as usize).map_or(index, |&word| word),
         }
     }
 }
+
+/// What turns around the halves of a word where its upper half comes first in memory.
+const SECOND_FIRST: u32 = cfg!(target_endian = "big") as u32;
 
 impl<'a> Leaf<'a> {
     /// `count` references from the one at `first`.

@@ -33,7 +33,7 @@ pub use mailbox::Mailbox;
 pub use malformed::{Malformed, Reason};
 pub use octree::Octree;
 pub use on_lattice::{LatticeAccelerator, LatticeWalk};
-pub use structure::{AnyNode, AnyTraversal, Plan, Structure};
+pub use structure::{AnyLeaf, AnyNode, AnyTraversal, Plan, Structure};
 
 use crate::geometry::{Aabb, PreparedRay};
 
@@ -75,4 +75,16 @@ pub enum Step<L> {
     Paused,
     /// The end of the ray.
     Done,
+}
+
+impl<L> Step<L> {
+    /// The same, with another kind of leaf.
+    #[inline(always)]
+    pub fn map<M>(self, leaf: impl FnOnce(L) -> M) -> Step<M> {
+        match self {
+            Self::Leaf(of) => Step::Leaf(leaf(of)),
+            Self::Paused => Step::Paused,
+            Self::Done => Step::Done,
+        }
+    }
 }

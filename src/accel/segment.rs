@@ -14,12 +14,16 @@ pub(crate) struct Segment {
 }
 
 impl Segment {
-    /// The part of the ray in the bounds of everything, for the first node.
+    /// The part of the ray in the bounds of everything, for the first node; exits are late by `slack`, as in all of the walk.
     #[inline(always)]
-    pub(crate) fn whole(bounds: &Aabb, ray: &PreparedRay) -> Option<Self> {
-        let (enter, exit) = bounds.interval(ray)?;
-        let enter = greatest(enter, ray.ray().t_min);
-        let exit = least(exit, beyond(ray.ray().t_max));
+    pub(crate) fn whole(bounds: &Aabb, ray: &PreparedRay, slack: f32) -> Option<Self> {
+        let (mut enter, mut exit) = (ray.ray().t_min, beyond(ray.ray().t_max));
+        let (min, max) = (bounds.min.to_array(), bounds.max.to_array());
+        for ((min, max), view) in min.into_iter().zip(max).zip(&ray.views) {
+            let (near, far) = if view.ascends() { (min, max) } else { (max, min) };
+            enter = greatest((near - view.origin) * view.entry, enter);
+            exit = least((far - view.origin) * view.exit + slack, exit);
+        }
         if enter > exit { None } else { Some(Self { node: 0, enter, exit }) }
     }
 

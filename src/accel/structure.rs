@@ -92,11 +92,11 @@ macro_rules! structures {
             ///
             /// # Errors
             ///
-            /// What is wrong with the words; [`AssetError::Missing`] if that kind of section is no structure.
+            /// What is wrong with the words; [`AssetError::NoStructure`] if that kind of section holds none.
             pub fn open(kind: Kind, words: &'a [u32]) -> Result<Self, Error> {
                 match kind {
                     $(Kind::$name => Ok(Self::$name($name::open(words)?)),)*
-                    _ => Err(AssetError::Missing { kind }.into()),
+                    _ => Err(AssetError::NoStructure.into()),
                 }
             }
 
@@ -185,23 +185,19 @@ macro_rules! structures {
         }
 
         impl<'a> Traversal for AnyTraversal<'a> {
-            type Leaf = Leaf<'a>;
+            type Leaf = AnyLeaf<'a>;
 
-            fn next_leaf(&mut self, ray: &PreparedRay, t_max: f32) -> Option<Leaf<'a>> {
+            fn next_leaf(&mut self, ray: &PreparedRay, t_max: f32) -> Option<AnyLeaf<'a>> {
                 match self {
-                    Self::List(walk) => walk.next_leaf(ray, t_max).map(Leaf::from),
-                    $(Self::$name(walk) => walk.next_leaf(ray, t_max),)*
+                    Self::List(walk) => walk.next_leaf(ray, t_max).map(|range| AnyLeaf::All(range.into())),
+                    $(Self::$name(walk) => walk.next_leaf(ray, t_max).map(AnyLeaf::from),)*
                 }
             }
 
-            fn step(&mut self, ray: &PreparedRay, t_max: f32, budget: &mut u32) -> Step<Leaf<'a>> {
+            fn step(&mut self, ray: &PreparedRay, t_max: f32, budget: &mut u32) -> Step<AnyLeaf<'a>> {
                 match self {
-                    Self::List(walk) => match walk.step(ray, t_max, budget) {
-                        Step::Leaf(range) => Step::Leaf(range.into()),
-                        Step::Paused => Step::Paused,
-                        Step::Done => Step::Done,
-                    },
-                    $(Self::$name(walk) => walk.step(ray, t_max, budget),)*
+                    Self::List(walk) => walk.step(ray, t_max, budget).map(|range| AnyLeaf::All(range.into())),
+                    $(Self::$name(walk) => walk.step(ray, t_max, budget).map(AnyLeaf::from),)*
                 }
             }
         }
@@ -227,7 +223,7 @@ macro_rules! structures {
                 const KINDS: &[Kind] = &[$(Kind::$name),*];
                 match asset.sections().find(|section| KINDS.contains(&section.kind)) {
                     Some(section) => Self::open(section.kind, section.words),
-                    None => Err(AssetError::Missing { kind: Kind::KdTree }.into()),
+                    None => Err(AssetError::NoStructure.into()),
                 }
             }
         }
@@ -247,6 +243,38 @@ structures! {
     Bvh(bvh::Options),
     /// A dual-split tree.
     DualSplit(dualsplit::Options),
+}
+
+/// What the walk over a [`Structure`] gives.
+#[derive(Clone, Copy, Debug)]
+#[allow(missing_docs, reason = "one per kind of leaf")]
+pub enum AnyLeaf<'a> {
+    All(Leaf<'a>),
+    Met(grid::Met<'a>),
+}
+
+impl<'a> From<Leaf<'a>> for AnyLeaf<'a> {
+    fn from(leaf: Leaf<'a>) -> Self {
+        Self::All(leaf)
+    }
+}
+
+impl<'a> From<grid::Met<'a>> for AnyLeaf<'a> {
+    fn from(leaf: grid::Met<'a>) -> Self {
+        Self::Met(leaf)
+    }
+}
+
+impl Iterator for AnyLeaf<'_> {
+    type Item = u32;
+
+    #[inline]
+    fn next(&mut self) -> Option<u32> {
+        match self {
+            Self::All(leaf) => leaf.next(),
+            Self::Met(leaf) => leaf.next(),
+        }
+    }
 }
 
 impl From<List> for Structure<'_> {

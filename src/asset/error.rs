@@ -48,6 +48,8 @@ pub enum AssetError {
         /// What it would hold.
         kind: Kind,
     },
+    /// A structure of whatever kind is not there.
+    NoStructure,
     /// The length of a section does not fit what it holds.
     Shape {
         /// The section.
@@ -75,6 +77,7 @@ impl fmt::Display for AssetError {
             }
             Self::Table { entry } => write!(f, "entry {entry} of the asset's table is wrong"),
             Self::Missing { kind } => write!(f, "the asset has no section of {kind}"),
+            Self::NoStructure => write!(f, "the asset has no section that holds a structure"),
             Self::Shape { kind, words } => write!(f, "a section of {kind} cannot have {words} words"),
         }
     }

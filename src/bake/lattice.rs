@@ -102,8 +102,8 @@ fn displacement(mesh: &Mesh<'_>, moved: &LatticeMesh<'_>) -> f32 {
     let corners = (0..mesh.len()).filter_map(|triangle| mesh.indices().get(triangle)).flatten();
     let squares = corners.filter_map(|vertex| {
         let (from, to) = (mesh.vertices().get(vertex as usize)?, positions.get(vertex as usize)?);
-        let squares = Axis::ALL.map(|axis| f64::from(axis.of(*to)) - f64::from(axis.of(*from))).map(|x| x * x);
-        Some(squares.iter().sum::<f64>())
+        let along = |(to, from)| f64::from(to) - f64::from(from);
+        Some(to.to_array().into_iter().zip(from.to_array()).map(along).map(|length| length * length).sum())
     });
     let exact = crate::math::sqrt64(squares.fold(0.0, f64::max));
     let rounded = exact as f32;

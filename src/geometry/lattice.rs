@@ -1,5 +1,4 @@
 use super::{Aabb, Axis};
-use crate::math;
 
 /// Equally spaced planes over a box, numbered along each axis: coordinates in 16 bits and less.
 ///
@@ -77,7 +76,7 @@ impl Lattice {
         let last = self.last(axis);
         let fits = |number: u32| self.position(axis, number) <= x;
         let k = axis as usize;
-        let guess = math::floor((x - self.origin[k]) / self.step[k]);
+        let guess = (x - self.origin[k]) / self.step[k];
         let guess = if guess > 0.0 { (guess as u32).min(last) } else { 0 };
         let is_last = |number: u32| fits(number) && (number == last || !fits(number + 1));
         for guess in [guess, guess.saturating_sub(1), (guess + 1).min(last)] {

@@ -1,7 +1,7 @@
 use glam::Vec3;
 
-use super::{Axis, in_range};
-use crate::math::{greatest, least};
+use super::{Axis, MAX_COORDINATE};
+use crate::math::greatest;
 
 /// The relative slack of every exit, 2^-16 (rule R2 of ARCHITECTURE.md): exits are multiplied by `1 + WIDENING`.
 ///
@@ -11,6 +11,23 @@ const WIDENING: f32 = 1.0 / 65536.0;
 
 /// Absolute slack of every exit, 2^-126: more than what underflow can take from a product.
 pub(crate) const TINY: f32 = f32::MIN_POSITIVE;
+
+/// The bits of a number without its sign: they order as magnitudes do, infinity and NaN above all.
+///
+/// Where there is no FPU, this is a fraction of a comparison of floats.
+#[inline(always)]
+const fn magnitude(x: f32) -> u32 {
+    x.to_bits() & 0x7fff_ffff
+}
+
+/// 2^-21, the relative error of a slope times a depth: five roundings, and what their products add; over [`LIFT`].
+const SHEARED: f32 = 1.0 / 2_097_152.0 / LIFT;
+
+/// 2^-46 over [`LIFT`]: what underflow can take from a slope, and no denormal.
+const FLAT: f32 = 1.0 / 70_368_744_177_664.0 / LIFT;
+
+/// 2^64, by which bounds on errors are lifted, so that they overflow before what they bound does.
+pub(crate) const LIFT: f32 = 18_446_744_073_709_551_616.0;
 
 /// A half-line with a closed interval of parameters and a visibility mask.
 ///
@@ -98,6 +115,9 @@ impl defmt::Format for Ray {
     }
 }
 
+/// The bits of 2^-100 … 2^100, the largest component of a direction.
+const LARGEST: core::ops::RangeInclusive<u32> = magnitude(7.888_609e-31)..=magnitude(1.267_650_6e30);
+
 /// A ray as one axis sees it: the parameter of the plane at `p` is `(p - origin) * entry`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct AxisView {
@@ -110,28 +130,42 @@ pub(crate) struct AxisView {
 
 impl AxisView {
     /// Chooses reciprocals so that no case needs a branch in a traversal (rule R1).
-    ///
-    /// * `direction = 0`: both infinite. A plane's parameter is then -inf before the origin and +inf behind it, which is
-    ///   closed containment; in the plane itself it is NaN, and comparisons are written so that NaN visits.
-    /// * `1 / direction` overflows: entries use `f32::MAX`, which is too early and so safe. Exits use infinity:
-    ///   too late when ahead of the origin, and a plane behind the origin stays behind it. That is enough where
-    ///   `t >= 0`; for rays that reach back, both are NaN, and the axis never decides.
+    #[inline(always)]
     fn new(origin: f32, direction: f32, forward: bool) -> Self {
-        let inverse = 1.0 / direction;
-        let exit = inverse * (1.0 + WIDENING);
-        if direction == 0.0 || exit.is_finite() {
-            Self { origin, entry: inverse, exit }
-        } else if forward {
-            Self { origin, entry: inverse.clamp(f32::MIN, f32::MAX), exit }
+        let (entry, exit) = if magnitude(direction) < magnitude(f32::MIN_POSITIVE) {
+            parallel(direction, forward)
         } else {
-            Self { origin, entry: f32::NAN, exit: f32::NAN }
-        }
+            let entry = 1.0 / direction;
+            (entry, entry * (1.0 + WIDENING))
+        };
+        Self { origin, entry, exit }
     }
 
     /// Whether the ray meets lower coordinates first.
     #[inline(always)]
     pub(crate) fn ascends(&self) -> bool {
         !self.entry.is_sign_negative()
+    }
+}
+
+/// Reciprocals of an axis along which the ray hardly moves, for entries and for exits.
+///
+/// * `direction = 0`: both infinite. A plane's parameter is then -inf before the origin and +inf behind it, which is
+///   closed containment; in the plane itself it is NaN, and comparisons are written so that NaN visits.
+/// * `1 / direction` overflows: entries use `f32::MAX`, which is too early and so safe. Exits use infinity:
+///   too late when ahead of the origin, and a plane behind the origin stays behind it. That is enough where
+///   `t >= 0`; for rays that reach back, both are NaN, and the axis never decides.
+#[cold]
+#[inline(never)]
+fn parallel(direction: f32, forward: bool) -> (f32, f32) {
+    let inverse = 1.0 / direction;
+    let exit = inverse * (1.0 + WIDENING);
+    if direction == 0.0 || exit.is_finite() {
+        (inverse, exit)
+    } else if forward {
+        (inverse.clamp(f32::MIN, f32::MAX), exit)
+    } else {
+        (f32::NAN, f32::NAN)
     }
 }
 
@@ -151,44 +185,52 @@ pub struct PreparedRay {
 /// What turns the ray into the third axis: see the triangle's filter.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Shear {
-    /// The axes in cyclic order, the last of which is the major one: along it the direction is largest.
-    pub(crate) axes: [Axis; 3],
+    /// The axis along which the direction is largest: the third one, behind the other two in cyclic order.
+    pub(crate) major: Axis,
     /// The ray's origin in this order.
     pub(crate) origin: [f32; 3],
     /// The direction along the first two over that along the major one.
     pub(crate) slope: [f32; 2],
     /// One over the direction along the major one.
     pub(crate) inverse: f32,
+    /// By how much the coordinates of a point at depth 1 may be off for the slopes' sake, over [`LIFT`].
+    pub(crate) error: f32,
 }
 
 impl PreparedRay {
     fn new(ray: &Ray) -> Option<Self> {
         let (o, d) = (ray.origin, ray.direction);
-        let major = Axis::of_largest(d);
-        let largest = major.of(d).abs();
-        // 2^-100 … 2^100; a NaN anywhere fails one of these.
-        let valid = in_range(o)
-            && in_range(d)
-            && (7.888_609e-31..=1.267_650_6e30).contains(&largest)
-            && ray.t_min <= ray.t_max
-            && ray.t_min <= f32::MAX
-            && ray.t_max >= f32::MIN;
+        let [x, y, z] = d.to_array().map(magnitude);
+        let (major, largest) = match (y > x, z > if y > x { y } else { x }) {
+            (_, true) => (Axis::Z, z),
+            (true, false) => (Axis::Y, y),
+            (false, false) => (Axis::X, x),
+        };
+        let [x, y, z] = o.to_array().map(magnitude);
+        let farthest = x.max(y).max(z);
+        // Finite limits spare every primitive the question whether its `t` overflowed; NaN stays what it is.
+        let t_min = if ray.t_min < f32::MIN { f32::MIN } else { ray.t_min };
+        let t_max = if ray.t_max > f32::MAX { f32::MAX } else { ray.t_max };
+        let valid = farthest <= magnitude(MAX_COORDINATE) && LARGEST.contains(&largest) && t_min <= t_max;
         if !valid {
             return None;
         }
-        // Finite limits spare every primitive the question whether its `t` overflowed.
-        let ray = Ray { t_min: greatest(ray.t_min, f32::MIN), t_max: least(ray.t_max, f32::MAX), ..*ray };
-        let forward = ray.t_min >= 0.0;
-        let [x, y, z] = Axis::ALL.map(|axis| AxisView::new(axis.of(o), axis.of(d), forward));
-        let views = [x, y, z, z];
-        let inverse = views[major as usize].entry;
-        let axes = [major.next(), major.next().next(), major];
-        let [first, second, _] = axes;
-        let slope = [first.of(d) * inverse, second.of(d) * inverse];
-        let shear = Shear { axes, origin: axes.map(|axis| axis.of(o)), slope, inverse };
-        let bit = |axis: Axis| u32::from(!views[axis as usize].ascends()) << axis as u32;
-        let descending = (bit(Axis::X) | bit(Axis::Y) | bit(Axis::Z)) * 0x1111_1111;
-        Some(Self { ray, views, descending, shear })
+        let forward = t_min >= 0.0;
+        let x = AxisView::new(o.x, d.x, forward);
+        let y = AxisView::new(o.y, d.y, forward);
+        let z = AxisView::new(o.z, d.z, forward);
+        let (origin, [first, second], inverse) = match major {
+            Axis::X => ([o.y, o.z, o.x], [d.y, d.z], x.entry),
+            Axis::Y => ([o.z, o.x, o.y], [d.z, d.x], y.entry),
+            Axis::Z => ([o.x, o.y, o.z], [d.x, d.y], z.entry),
+        };
+        let slope = [first * inverse, second * inverse];
+        let error = greatest(slope[0].abs(), slope[1].abs()) * SHEARED + FLAT;
+        let shear = Shear { major, origin, slope, inverse, error };
+        let bit = |view: &AxisView, axis: Axis| view.entry.to_bits() >> 31 << axis as u32;
+        let descending = (bit(&x, Axis::X) | bit(&y, Axis::Y) | bit(&z, Axis::Z)) * 0x1111_1111;
+        let ray = Ray { origin: o, direction: d, t_min, t_max, mask: ray.mask };
+        Some(Self { ray, views: [x, y, z, z], descending, shear })
     }
 
     /// The ray as it was given, its interval cut to finite numbers.

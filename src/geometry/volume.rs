@@ -41,7 +41,7 @@ pub trait Volume {
 /// How far from a volume of this size, at this distance from the ray's origin, a hit may seem to be.
 #[inline(always)]
 fn pad(ray: &PreparedRay, distance: f32, size: f32) -> f32 {
-    let [.., major] = ray.shear.axes;
+    let major = ray.shear.major;
     (distance + size) * SLACK + (major.of(ray.ray().direction).abs() * STEP + LEAST)
 }
 
@@ -103,7 +103,7 @@ impl Volume for Obb {
     /// roundings do not matter. Infinite and NaN sides never reject.
     #[inline]
     fn may_meet(&self, ray: &PreparedRay, t_max: f32) -> bool {
-        let [.., major] = ray.shear.axes;
+        let major = ray.shear.major;
         let (axes, size) = (&self.axes, self.half_size);
         let turn = |v| Vec3::new(axes.x_axis.dot(v), axes.y_axis.dot(v), axes.z_axis.dot(v));
         let away = ray.ray().origin - self.center;

@@ -161,7 +161,7 @@ impl Primitives for LatticeMesh<'_> {
     #[inline(always)]
     fn intersect(&self, index: u32, ray: &PreparedRay, span: &Span) -> Option<Hit> {
         let corners = self.corners(index)?.map(|vertex| (&self.lattice, vertex));
-        let crossing = intersect_triangle(corners, ray, span.t_min(), span.t_max())?;
+        let crossing = intersect_triangle(corners, ray, || (span.t_min(), span.t_max()))?;
         if self.sides == Sides::Front && !crossing.front { None } else { span.accept(crossing.t, index) }
     }
 

@@ -166,7 +166,8 @@ impl Primitives for Mesh<'_> {
     fn intersect(&self, index: u32, ray: &PreparedRay, span: &Span) -> Option<Hit> {
         let [a, b, c] = self.indices.get(index)?;
         let corner = |vertex: u32| self.vertices.get(vertex as usize).map(AsRef::<[f32; 3]>::as_ref);
-        let crossing = intersect_triangle([corner(a)?, corner(b)?, corner(c)?], ray, span.t_min(), span.t_max())?;
+        let limits = || (span.t_min(), span.t_max());
+        let crossing = intersect_triangle([corner(a)?, corner(b)?, corner(c)?], ray, limits)?;
         if self.sides == Sides::Front && !crossing.front { None } else { span.accept(crossing.t, index) }
     }
 

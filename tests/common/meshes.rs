@@ -32,6 +32,13 @@ pub fn crossing(count: usize) -> Triangles {
     separate((0..count).map(|_| [point(), point()]).flat_map(|[a, b]| [a, b - a, -b]).collect())
 }
 
+/// Large triangles around one corner.
+pub fn fan(count: usize) -> Triangles {
+    let mut random = Random::new(9);
+    let mut point = || Vec3::from_array([0; 3].map(|_| random.unit() * 20.0 - 10.0));
+    separate((0..count).flat_map(|_| [Vec3::ZERO, point(), point()]).collect())
+}
+
 /// Thin diagonals through the whole scene.
 pub fn hair(count: usize) -> Triangles {
     let mut random = Random::new(7);

@@ -36,6 +36,7 @@ pub fn presets() -> Vec<(&'static str, Plan)> {
         ("dual-split small", Plan::DualSplit(dualsplit::Options::small())),
         ("dual-split balanced", Plan::DualSplit(dualsplit::Options::balanced())),
         ("dual-split fast", Plan::DualSplit(dualsplit::Options::fast())),
+        ("dual-split quick", Plan::DualSplit(dualsplit::Options::quick())),
     ]
 }
 
@@ -82,8 +83,9 @@ pub fn random(random: &mut Random, kind: usize) -> Plan {
             if kind == 2 { Plan::KdTree(options) } else { Plan::CompactKdTree(options) }
         }
         4 => {
-            let preset = random.pick(&[dualsplit::Options::small(), dualsplit::Options::fast()]);
-            Plan::DualSplit(dualsplit::Options { leaf_size, ..preset })
+            use dualsplit::Options;
+            let preset = random.pick(&[Options::small(), Options::fast(), Options::quick()]);
+            Plan::DualSplit(Options { leaf_size, ..preset })
         }
         _ => {
             let preset = random.pick(&[bvh::Options::small(), bvh::Options::fast()]);

@@ -4,15 +4,20 @@
 #[path = "../common/mod.rs"]
 mod common;
 mod walk;
+mod walks;
 
-use common::{FAMILIES, Random, adversarial_mesh, adversarial_ray, bits, boxed, noise};
+use common::{FAMILIES, Random, adversarial_mesh, adversarial_ray, bits, boxed, noise, plans};
 use hitscan::{
-    Arena, Hit, KdTree, List, Mesh, PreparedRay, Primitives, Ray, Scene, Span, from_fn,
+    Arena, Hit, KdTree, List, Mesh, PreparedRay, Primitives, Ray, Scene, Span,
+    accel::Structure,
+    asset::Kind,
+    from_fn,
     geometry::{Aabb, Triangle},
     glam::Vec3,
     kdtree::{Options, Split},
 };
 use walk::{Mutant, Shape, Walker};
+use walks::Shortcut;
 
 /// A hit, or none, as bits.
 type Answer = Option<(u32, u32)>;
@@ -34,8 +39,18 @@ fn options(random: &mut Random) -> Options {
     }
 }
 
+/// Shapes to cast rays at.
+struct Case<'a> {
+    /// How many there were before.
+    number: usize,
+    shapes: &'a [Shape],
+    primitives: &'a dyn Primitives,
+    tree: &'a KdTree<'a>,
+    library: Library<'a>,
+}
+
 /// Calls `check` with scenes and rays until it is content or `rays` were cast; how many were.
-fn fuzz(rays: usize, mut check: impl FnMut(&[Shape], &KdTree, Library, &Ray) -> bool) -> usize {
+fn fuzz(rays: usize, mut check: impl FnMut(&Case, &Ray) -> bool) -> usize {
     let mut random = Random::new(8);
     let mut memory = vec![0; 1 << 15];
     let mut cast = 0;
@@ -63,6 +78,7 @@ fn fuzz(rays: usize, mut check: impl FnMut(&[Shape], &KdTree, Library, &Ray) -> 
         let list = Scene::new(List::new(&both).unwrap(), &both).unwrap();
         let scene = Scene::new(tree, &both).unwrap();
         let library = |ray: &Ray| [bits(list.closest_hit(ray)), bits(scene.closest_hit(ray))];
+        let case = Case { number: cast / 100, shapes: &shapes, primitives: &both, tree: &tree, library: &library };
         for _ in 0..100 {
             let mut ray = adversarial_ray(&mut random, family, &corners);
             ray.origin *= small;
@@ -74,7 +90,7 @@ fn fuzz(rays: usize, mut check: impl FnMut(&[Shape], &KdTree, Library, &Ray) -> 
                 ray.t_min = hit.t;
             }
             cast += 1;
-            if check(&shapes, &tree, &library, &ray) || cast >= rays {
+            if check(&case, &ray) || cast >= rays {
                 return cast;
             }
         }
@@ -83,7 +99,7 @@ fn fuzz(rays: usize, mut check: impl FnMut(&[Shape], &KdTree, Library, &Ray) -> 
 
 #[test]
 fn the_right_rules_answer_as_the_library() {
-    fuzz(300_000, |shapes, tree, library, ray| {
+    fuzz(300_000, |Case { shapes, tree, library, .. }, ray| {
         assert_eq!(library(ray), answers(Mutant::Right, shapes, tree, ray), "{ray:?} {shapes:?}");
         false
     });
@@ -94,7 +110,7 @@ fn every_mutant_is_caught() {
     let mut survivors = vec![];
     for mutant in Mutant::ALL {
         const ENOUGH: usize = 3_000_000;
-        let caught = fuzz(ENOUGH, |shapes, tree, _, ray| {
+        let caught = fuzz(ENOUGH, |Case { shapes, tree, .. }, ray| {
             let [list, walked] = answers(mutant, shapes, tree, ray);
             list != walked
         });
@@ -104,6 +120,73 @@ fn every_mutant_is_caught() {
         }
     }
     assert!(survivors.is_empty(), "{survivors:?}");
+}
+
+/// A structure of one kind over the shapes of a case, built once for all rays at them.
+struct Boxes {
+    random: Random,
+    kind: usize,
+    /// The number of the case, the structure's kind and its words.
+    built: Option<(usize, Kind, Vec<u32>)>,
+}
+
+impl Boxes {
+    /// Whether the list and a walk through the boxes differ.
+    fn differ(&mut self, mutant: Mutant, case: &Case, ray: &Ray) -> bool {
+        if self.built.as_ref().is_none_or(|(number, ..)| *number != case.number) {
+            let mut memory = vec![0; 1 << 15];
+            let built = plans::build(&mut self.random, self.kind, &case.primitives, &mut memory);
+            self.built = built.map(|(_, it)| (case.number, it.kind().unwrap(), it.as_words().to_vec()));
+        }
+        let Some((_, kind, words)) = &self.built else { return false };
+        let structure = Structure::open(*kind, words).unwrap();
+        let walker = || Walker::new(mutant, case.shapes, ray);
+        bits(walker().and_then(Walker::list)) != bits(walker().and_then(|walker| walker.boxes(&structure)))
+    }
+}
+
+#[test]
+fn the_rules_of_boxes_are_needed_in_every_structure() {
+    use Mutant::*;
+    for kind in 0..plans::KINDS {
+        let boxes = || Boxes { random: Random::new(12), kind, built: None };
+        let mut right = boxes();
+        assert_eq!(fuzz(50_000, |case, ray| right.differ(Right, case, ray)), 50_000, "structure {kind}");
+        for mutant in
+            [ContainmentForOverflow, CutExitsForOverflow, NoWidening, FactorOnly, PruneAtBest, NoClamp, RejectAtBest]
+        {
+            const ENOUGH: usize = 500_000;
+            let mut broken = boxes();
+            let caught = fuzz(ENOUGH, |case, ray| broken.differ(mutant, case, ray));
+            println!("{mutant:?} in structure {kind} is caught by ray {caught}");
+            assert!(caught < ENOUGH, "{mutant:?} in structure {kind}");
+        }
+    }
+}
+
+#[test]
+fn every_shortcut_is_caught() {
+    for shortcut in Shortcut::ALL {
+        let answer = |taken: bool, case: &Case, ray: &Ray, before: &Ray| {
+            let walker = |ray| Walker::new(Mutant::Right, case.shapes, ray);
+            bits(walker(ray).and_then(|it| it.shortcut(shortcut, taken, walker(before))))
+        };
+        let mut before = Ray::new(Vec3::ZERO, Vec3::X);
+        fuzz(30_000, |case, ray| {
+            if shortcut != Shortcut::BestPassedDown {
+                assert_eq!(answer(false, case, ray, &before), (case.library)(ray)[0], "{shortcut:?} {ray:?}");
+            }
+            false
+        });
+        const ENOUGH: usize = 3_000_000;
+        let caught = fuzz(ENOUGH, |case, ray| {
+            let differs = answer(true, case, ray, &before) != answer(false, case, ray, &before);
+            before = *ray;
+            differs
+        });
+        println!("{shortcut:?} is caught by ray {caught}");
+        assert!(caught < ENOUGH, "{shortcut:?}");
+    }
 }
 
 /// Triangles by the plain test of Möller and Trumbore (1997), whose `t` may be far off.

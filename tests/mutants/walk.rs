@@ -71,12 +71,12 @@ pub enum Shape {
 /// A ray under the rules.
 pub struct Walker<'a> {
     mutant: Mutant,
-    shapes: &'a [Shape],
+    pub shapes: &'a [Shape],
     prepared: PreparedRay,
-    ray: Ray,
+    pub ray: Ray,
     /// Reciprocals for entries and exits per axis.
-    views: [(f32, f32); 3],
-    best: Option<Hit>,
+    pub views: [(f32, f32); 3],
+    pub best: Option<Hit>,
 }
 
 const TINY: f32 = f32::MIN_POSITIVE;
@@ -115,7 +115,7 @@ impl<'a> Walker<'a> {
     }
 
     /// The widened parameter of a box's far side.
-    fn exit(&self, t: f32) -> f32 {
+    pub fn exit(&self, t: f32) -> f32 {
         let narrowed = t < 0.0 && self.mutant != FactorOnly;
         (if narrowed { t * (1.0 - 4.0 * self.widening()) } else { t }) + self.tiny()
     }
@@ -128,15 +128,15 @@ impl<'a> Walker<'a> {
         }
     }
 
-    fn beyond(&self, t: f32) -> f32 {
+    pub fn beyond(&self, t: f32) -> f32 {
         if self.mutant == PruneAtBest { t } else { t + t.abs() * (4.0 * self.widening()) + 4.0 * self.tiny() }
     }
 
-    fn ascends(&self, axis: Axis) -> bool {
+    pub fn ascends(&self, axis: Axis) -> bool {
         !self.views[axis as usize].0.is_sign_negative()
     }
 
-    fn interval(&self, aabb: &Aabb) -> Option<(f32, f32)> {
+    pub fn interval(&self, aabb: &Aabb) -> Option<(f32, f32)> {
         let (mut enter, mut exit) = (f32::NEG_INFINITY, f32::INFINITY);
         for axis in Axis::ALL {
             let (min, max) = (axis.of(aabb.min), axis.of(aabb.max));
@@ -175,11 +175,15 @@ impl<'a> Walker<'a> {
         }
     }
 
-    fn test(&mut self, primitive: u32) {
-        if let Some(t) = self.crossing(primitive)
-            && t >= self.ray.t_min
-            && t <= self.ray.t_max
-        {
+    pub fn test(&mut self, primitive: u32) {
+        if let Some(t) = self.crossing(primitive) {
+            self.offer(t, primitive);
+        }
+    }
+
+    /// Takes a hit that counts.
+    pub fn offer(&mut self, t: f32, primitive: u32) {
+        if t >= self.ray.t_min && t <= self.ray.t_max {
             let hit = Hit { t, primitive };
             if self.best.is_none_or(|best| hit.precedes(&best)) {
                 self.best = Some(hit);

@@ -6,8 +6,7 @@ use hitscan::{
     Accelerator, Arena, DualSplit, Hit, List, Mesh, Primitives, Ray, Scene, Span, Traversal,
     accel::{Hierarchy, Inside, MAX_LEVELS, Reason, Step},
     arena::Full,
-    dualsplit::{MAX_DEPTH, Options},
-    error::BuildError,
+    dualsplit::{MAX_DEPTH, Method, Options},
     from_fn,
     geometry::Aabb,
     glam::Vec3,
@@ -16,6 +15,7 @@ use hitscan::{
 fn options(random: &mut Random) -> Options {
     let preset = random.pick(&[Options::small(), Options::balanced(), Options::fast()]);
     Options {
+        method: random.pick(&[Method::Thorough, Method::Quick]),
         leaf_size: random.pick(&[0, 1, 1, 2, 4, 15, 99]),
         intersection_cost: random.pick(&[preset.intersection_cost, 2.0, 1.0e9, 0.0, f32::NAN, f32::INFINITY, -1.0]),
         carve_threshold: random.pick(&[preset.carve_threshold, 1.0, 0.0, f32::INFINITY, f32::NAN, -1.0]),
@@ -119,55 +119,33 @@ fn all_hits_come_in_order() {
 }
 
 #[test]
-fn every_arena_is_large_enough_or_refused() {
-    let mut random = Random::new(3);
-    for count in [0, 1, 2, 3, 17, 40] {
-        let boxes: Vec<Aabb> = (0..count).map(|_| boxed(&mut random, 2)).collect();
-        let shapes = from_fn(count, |i| boxes[i as usize], |_, _| Some(1.0));
-        let (enough, tenant) = (DualSplit::words(count as usize, &Options::balanced()), 5);
-        let mut memory = vec![0; enough + tenant + 3];
-        let expected = build(&shapes, &mut vec![0; enough], &Options::fast()).as_words().to_vec();
-        for k in 0..enough + 3 {
-            memory[..tenant].fill(7);
-            let (earlier, free) = memory.split_at_mut(tenant);
-            let mut arena = Arena::new(&mut free[..k]);
-            match DualSplit::build(&shapes, &mut arena, &Options::fast()) {
-                Ok(tree) => {
-                    assert!(k >= enough);
-                    assert_eq!(tree.as_words(), expected);
-                    assert_eq!(arena.available(), k - expected.len());
-                }
-                Err(error) => {
-                    assert_eq!(error, BuildError::Full(Full { at_least: enough, available: k }));
-                    assert_eq!(arena.available(), k);
-                }
-            }
-            assert_eq!(earlier, [7; 5]);
-        }
-        let tree = build(&shapes, &mut memory, &Options::fast());
-        let most = tree.ordered_words().count();
-        for k in 0..most {
-            let mut memory = vec![0; k];
-            let refused = tree.ordered(&mut Arena::new(&mut memory)).map(|tree| tree.depth());
-            assert_eq!(refused, Err(Full { at_least: most, available: k }));
-        }
+fn ordering_takes_the_words_of_the_ordered_tree() {
+    let words = some_words(5, 40, 2);
+    let tree = DualSplit::open(&words).unwrap();
+    let most = tree.ordered_words().count();
+    for k in 0..most {
+        let mut memory = vec![0; k];
+        let refused = tree.ordered(&mut Arena::new(&mut memory)).map(|tree| tree.depth());
+        assert_eq!(refused, Err(Full { at_least: most, available: k }));
     }
-    const { assert!(DualSplit::words(1000, &Options::balanced()) < 5000) };
-    assert_eq!(DualSplit::words(usize::MAX, &Options::balanced()), usize::MAX);
 }
 
 #[test]
-fn primitives_without_valid_bounds_are_named() {
-    let bad = [Aabb::EMPTY, Aabb::new(Vec3::NAN, Vec3::ONE), Aabb::new(Vec3::ZERO, Vec3::splat(1.0e38))];
-    for bad in bad {
-        let good = Aabb::new(Vec3::ZERO, Vec3::ONE);
-        let shapes = from_fn(9, |i| if i == 5 || i == 7 { bad } else { good }, |_, _| Some(1.0));
-        let mut memory = vec![7; DualSplit::words(9, &Options::balanced())];
-        let mut arena = Arena::new(&mut memory);
-        let refused = DualSplit::build(&shapes, &mut arena, &Options::small()).map(|tree| tree.depth());
-        assert_eq!(refused, Err(BuildError::Bounds { primitive: 5 }));
-        assert_eq!(arena.available(), DualSplit::words(9, &Options::balanced()));
+fn the_quick_builder_takes_a_kilobyte_beside_the_tree() {
+    let mut random = Random::new(8);
+    for most in [30, 300, 3000] {
+        for family in 0..FAMILIES {
+            let (vertices, triangles) = adversarial_mesh(&mut random, family, most);
+            let mesh = Mesh::new(&vertices, &triangles[..]).unwrap();
+            let mut memory = vec![0; DualSplit::words(triangles.len(), &Options::quick())];
+            let words = build(&mesh, &mut memory, &Options::quick()).as_words().to_vec();
+            // Beside a tree so small that codes take more, a little more.
+            let mut memory = vec![0; words.len().max(triangles.len() * 9 / 8) + 256];
+            assert_eq!(build(&mesh, &mut memory, &Options::quick()).as_words(), words);
+        }
     }
+    const { assert!(DualSplit::words(1000, &Options::quick()) < 1850) };
+    const { assert!(DualSplit::words(1000, &Options::balanced()) < 5000) };
 }
 
 /// Every primitive once, within its cell, and no cell deeper than allowed.
@@ -212,7 +190,8 @@ fn adversaries_stay_bounded() {
     for vertices in [identical, through_one_point, series.collect(), on_a_line, needles.collect()] {
         let (vertices, triangles) = separate(vertices);
         let mesh = Mesh::new(&vertices, &triangles[..]).unwrap();
-        for options in [Options::small(), Options { leaf_size: 1, carve_threshold: 0.0, ..Options::fast() }] {
+        let finest = Options { leaf_size: 1, carve_threshold: 0.0, ..Options::fast() };
+        for options in [Options::small(), finest, Options::quick(), Options { method: Method::Quick, ..finest }] {
             let mut memory = vec![0; DualSplit::words(triangles.len(), &Options::balanced())];
             let tree = build(&mesh, &mut memory, &options);
             assert!(tree.depth() as usize <= MAX_DEPTH);
@@ -232,37 +211,6 @@ fn cells_hold_their_primitives() {
         let mesh = Mesh::new(&vertices, &triangles[..]).unwrap();
         let options = options(&mut random);
         check_cells(&build(&mesh, &mut memory, &options), &mesh);
-    }
-}
-
-#[test]
-fn numbers_grow_to_32_bits() {
-    // 65,536 is the last count with narrow numbers.
-    for count in [65_535, 65_536, 65_537] {
-        let boxes = |i: u32| Aabb::new(Vec3::splat((i / 3) as f32), Vec3::splat((i / 3 + 1) as f32));
-        let shapes = from_fn(count, boxes, |i, _| Some(i as f32));
-        let mut memory = vec![0; DualSplit::words(count as usize, &Options::balanced())];
-        let tree = build(&shapes, &mut memory, &Options::small());
-        check_cells(&tree, &shapes);
-        let scene = Scene::new(DualSplit::open(tree.as_words()).unwrap(), &shapes).unwrap();
-        let list = Scene::new(List::new(&shapes).unwrap(), &shapes).unwrap();
-        let along = Ray::new(Vec3::splat(((count - 20) / 3) as f32 + 0.5), Vec3::ONE);
-        assert_eq!(scene.closest_hit(&along), list.closest_hit(&along));
-        assert_eq!(scene.hits(&along).last(), list.hits(&along).last());
-    }
-}
-
-#[test]
-fn nothing_can_be_built_and_hit() {
-    let nothing = Mesh::new(&[], &[[0_u16; 3]; 0]).unwrap();
-    let mut memory = vec![0; DualSplit::words(0, &Options::balanced())];
-    let tree = build(&nothing, &mut memory, &Options::fast());
-    assert!(tree.root().is_none() && tree.order().len() == 0);
-    let scene = Scene::new(DualSplit::open(tree.as_words()).unwrap(), &nothing).unwrap();
-    let mut random = Random::new(5);
-    for _ in 0..1000 {
-        let ray = adversarial_ray(&mut random, 2, &[Vec3::ZERO, Vec3::X, Vec3::Y]);
-        assert!(scene.closest_hit(&ray).is_none() && !scene.any_hit(&ray) && scene.hits(&ray).count() == 0);
     }
 }
 
@@ -413,14 +361,22 @@ fn work_grows_with_the_length_and_not_with_the_number() {
 }
 
 #[test]
+fn the_quick_builder_makes_nearly_as_good_a_tree() {
+    let (bytes, nodes, tests) = measured(100, &Options::balanced());
+    let (quick_bytes, quick_nodes, quick_tests) = measured(100, &Options::quick());
+    assert!(quick_bytes < bytes * 1.1, "{bytes} {quick_bytes}");
+    assert!(quick_nodes + quick_tests < (nodes + tests) * 1.25, "{nodes} {quick_nodes} {tests} {quick_tests}");
+}
+
+#[test]
 fn building_gives_the_same_words_everywhere() {
     let (vertices, triangles) = sheet(20);
     let mesh = Mesh::new(&vertices, &triangles[..]).unwrap();
     let mut memory = vec![0; DualSplit::words(triangles.len(), &Options::balanced())];
-    let words = build(&mesh, &mut memory, &Options::balanced()).as_words();
-    let sum = words.iter().fold(0x811c_9dc5, |sum: u32, word| (sum ^ word).wrapping_mul(0x0100_0193).rotate_left(13));
     // Changes when the format or the preset does.
-    assert_eq!(sum, SUM);
+    for (options, expected) in [(Options::balanced(), 216_787_549), (Options::quick(), 4_054_135_870)] {
+        let words = build(&mesh, &mut memory, &options).as_words();
+        let step = |sum: u32, word: &u32| (sum ^ word).wrapping_mul(0x0100_0193).rotate_left(13);
+        assert_eq!(words.iter().fold(0x811c_9dc5, step), expected, "{options:?}");
+    }
 }
-
-const SUM: u32 = 216_787_549;

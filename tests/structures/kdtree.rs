@@ -99,3 +99,16 @@ fn trees_fit_into_their_bytes() {
         }
     }
 }
+
+#[test]
+fn bytes_that_are_allowed_are_used() {
+    let (vertices, triangles) = random(600, 0.2);
+    let mesh = Mesh::new(&vertices, &triangles[..]).unwrap();
+    let free = Options::fast();
+    let mut memory = vec![0; KdTree::words(triangles.len(), &free.fit(1 << 20))];
+    let most = build(&mesh, &mut memory, &free).unwrap().as_words().len() * 4;
+    for bytes in [most * 3 / 4, most / 2, most / 4] {
+        let size = build(&mesh, &mut memory, &free.fit(bytes)).unwrap().as_words().len() * 4;
+        assert!(size <= bytes && size > bytes * 9 / 10, "{size} of {bytes}");
+    }
+}

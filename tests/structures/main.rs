@@ -5,6 +5,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod adversaries;
 mod bvh;
 mod compact;
 mod dualsplit;

@@ -8,7 +8,7 @@ use hitscan::{
     from_fn,
     geometry::Aabb,
     glam::Vec3,
-    kdtree, octree,
+    grid, kdtree, octree,
     primitives::Spheres,
 };
 
@@ -34,8 +34,15 @@ fn all_plans() -> impl Iterator<Item = Plan> {
             .into_iter()
             .flat_map(move |split| clips.map(|clip| Plan::Octree(octree::Options { split, clip, ..base })))
     });
+    let grids = [grid::Options::small(), grid::Options::fast(), grid::Options::quick(), grid::Options::fast().fit(400)];
+    let crowded = grid::Options { density: 90.0, bytes_per_primitive: 200, ..grid::Options::fast() };
+    let grids = grids.into_iter().chain([crowded]).flat_map(move |base| {
+        [grid::Form::Full, grid::Form::Bitmask]
+            .into_iter()
+            .flat_map(move |form| clips.map(|clip| Plan::Grid(grid::Options { form, clip, ..base })))
+    });
     let budgets = [Plan::KdTree(kdtree::Options::fast().fit(400)), Plan::Octree(octree::Options::fast().fit(400))];
-    plans::presets().into_iter().map(|(_, plan)| plan).chain(kd).chain(octrees).chain(budgets)
+    plans::presets().into_iter().map(|(_, plan)| plan).chain(kd).chain(octrees).chain(grids).chain(budgets)
 }
 
 fn build<'m, P: Primitives>(primitives: &P, memory: &'m mut [u32], plan: &Plan) -> Result<Structure<'m>, BuildError> {
@@ -141,7 +148,8 @@ fn numbers_of_references_grow_to_32_bits() {
         let list = Scene::new(List::new(&shapes).unwrap(), &shapes).unwrap();
         let along = Ray::new(Vec3::splat(((count - 20) / 3) as f32 + 0.5), Vec3::ONE);
         assert_eq!(list.hits(&along).last().map(|hit| hit.primitive), Some(count - 1));
-        for (name, plan) in plans::presets().into_iter().filter(|(name, _)| name.ends_with("small")) {
+        let once = |name: &str| name.ends_with("small") || name.ends_with("quick");
+        for (name, plan) in plans::presets().into_iter().filter(|(name, _)| once(name)) {
             let mut memory = vec![0; plan.words(count as usize)];
             let built = build(&shapes, &mut memory, &plan).unwrap();
             let scene = Scene::new(Structure::open(plan.kind().unwrap(), built.as_words()).unwrap(), &shapes).unwrap();

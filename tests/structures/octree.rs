@@ -379,7 +379,7 @@ fn trees_are_worth_their_bytes() {
         (Options::small(), 15, 6.5, 5.5),
         (Options::balanced(), 22, 7.0, 3.5),
         (Options::fast(), 48, 7.2, 2.4),
-        (Options { split: Split::Middle, ..Options::balanced() }, 40, 8.0, 6.0),
+        (Options { split: Split::Middle, ..Options::balanced() }, 24, 7.0, 7.5),
     ] {
         let words = baked(&mesh, &options);
         let (nodes, tests) = work(&Octree::open(&words).unwrap(), &mesh, &rays);

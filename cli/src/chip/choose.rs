@@ -1,4 +1,4 @@
-use hitscan::{Primitives, bake};
+use hitscan::Primitives;
 
 use super::{Chip, Prediction};
 use crate::{
@@ -33,7 +33,7 @@ pub fn choose<P: Primitives + Sync>(
     let mut best: Option<(f64, Built)> = None;
     let mut least = usize::MAX;
     for built in tried {
-        let bytes = bake::ordered(&built.structure(primitives)?).map_or(built.bytes(), |(words, _)| words.len() * 4);
+        let bytes = built.baked_bytes(primitives)?;
         least = least.min(bytes);
         if most.is_some_and(|most| bytes > most) {
             continue;

@@ -27,6 +27,8 @@ pub struct Outcome {
     pub build: f64,
     /// Bytes in all.
     pub bytes: f64,
+    /// Bytes once it is baked, by which structures are recommended.
+    pub baked: f64,
     /// Bytes per triangle.
     pub per_triangle: f64,
     /// Nodes and tests of a bounce ray.
@@ -129,6 +131,7 @@ impl Contest<'_> {
         let outcome = Outcome {
             build,
             bytes,
+            baked: made.baked_bytes(&mesh)? as f64,
             per_triangle: bytes / f64::from(mesh.len().max(1)),
             work: work(bounce, stride)?,
             trial: if row.is_candidate() { work(self.trial, 1)? } else { Work::default() },

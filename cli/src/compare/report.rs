@@ -121,7 +121,7 @@ impl Report {
         let candidates: Vec<_> = self
             .outcomes()
             .filter(|(row, _)| row.is_candidate())
-            .map(|(row, outcome)| candidate(row.named, outcome.bytes as usize, self.triangles, outcome.trial))
+            .map(|(row, outcome)| candidate(row.named, outcome.baked as usize, self.triangles, outcome.trial))
             .collect();
         recommend(&candidates, self.preset)
     }
@@ -139,6 +139,7 @@ pub fn medians(reports: &[Report]) -> Option<Report> {
             Outcome {
                 build: of(|o| o.build),
                 bytes: of(|o| o.bytes),
+                baked: of(|o| o.baked),
                 per_triangle: of(|o| o.per_triangle),
                 work: Work { nodes: of(|o| o.work.nodes), tests: of(|o| o.work.tests) },
                 trial: Work { nodes: of(|o| o.trial.nodes), tests: of(|o| o.trial.tests) },

@@ -26,6 +26,11 @@ pub trait Made {
     /// Its bytes, those of the mesh not counted.
     fn bytes(&self) -> usize;
 
+    /// Its bytes once it is baked.
+    fn baked_bytes(&self, _mesh: &Mesh<'_>) -> Result<usize, Failure> {
+        Ok(self.bytes())
+    }
+
     /// The scene of the mesh that it was built over, ready for rays; what they take is added to `counts`, if there are any.
     fn scene<'a>(&'a self, mesh: Mesh<'a>, counts: Option<&'a Counts>) -> Result<Box<dyn Caster + 'a>, Failure>;
 }
@@ -34,6 +39,10 @@ pub trait Made {
 impl Made for Built {
     fn bytes(&self) -> usize {
         self.bytes()
+    }
+
+    fn baked_bytes(&self, mesh: &Mesh<'_>) -> Result<usize, Failure> {
+        Self::baked_bytes(self, mesh)
     }
 
     fn scene<'a>(&'a self, mesh: Mesh<'a>, counts: Option<&'a Counts>) -> Result<Box<dyn Caster + 'a>, Failure> {

@@ -170,7 +170,7 @@ impl Source {
                 // An asset without one is a list.
                 let structure = match asset.read() {
                     Ok(structure) => Some(structure),
-                    Err(Error::Asset(AssetError::Missing { .. })) => None,
+                    Err(Error::Asset(AssetError::NoStructure)) => None,
                     Err(error) => return Err(damaged(error)),
                 };
                 let renumbering = has(Kind::Numbers).then(|| asset.read().map_err(damaged)).transpose()?;

@@ -14,7 +14,7 @@ pub const MANY: u32 = 100_000;
 pub struct Candidate {
     /// Which one.
     pub named: &'static Named,
-    /// Bytes per primitive.
+    /// Bytes per primitive once it is baked.
     pub bytes: f64,
     /// The work of a ray, in tests.
     pub work: f64,
@@ -51,7 +51,7 @@ pub fn recommend(candidates: &[Candidate], preset: Preset) -> Option<Recommendat
     if let Some(Candidate { named, bytes, work }) = within.min_by(|a, b| a.work.total_cmp(&b.work)) {
         let why = format!(
             "the least work of a bounce ray, as much as {work:.1} tests, of those within {budget} bytes per primitive \
-             (`{name}`); it takes {bytes:.1}"
+             (`{name}`); it takes {bytes:.1} when baked"
         );
         return Some(Recommendation { named, why });
     }

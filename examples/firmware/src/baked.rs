@@ -7,7 +7,7 @@ use hitscan::{
     primitives::LatticeTriangles,
 };
 
-use crate::Answer;
+use crate::{Answer, builds::BUILDS, hash::Hash};
 
 /// An asset, and what the host found in it.
 #[derive(Clone, Copy, Debug)]
@@ -37,9 +37,7 @@ impl Baked {
     pub fn scene_under<A: Accelerator + Stored<'static>>(&self) -> Scene<A, Mesh<'static>> {
         self.asset().scene().expect("build.rs bakes meshes with their structures")
     }
-}
 
-impl Baked {
     /// The structure with its mesh on a lattice.
     pub fn lattice_scene<A: LatticeAccelerator + Stored<'static>, P: LatticeTriangles + Stored<'static>>(
         &self,

@@ -79,7 +79,9 @@ fn now() -> u64 {
     loop {
         let periods = PERIODS.load(Relaxed);
         let left = cortex_m::peripheral::SYST::get_current();
-        if PERIODS.load(Relaxed) == periods {
+        // At 0 a period has ended, and the next has not begun; or it has, and the interrupt that counts it is on its way.
+        let is_between = left == 0 || cortex_m::peripheral::SCB::is_pendst_pending();
+        if !is_between && PERIODS.load(Relaxed) == periods {
             return u64::from(periods) * u64::from(PERIOD) + u64::from(PERIOD - 1 - left);
         }
     }

@@ -10,6 +10,7 @@ mod input;
 mod plan;
 mod query;
 mod render;
+mod sensor;
 
 use core::panic::PanicInfo;
 

@@ -75,7 +75,6 @@ fn bvh() -> bvh::Options {
 
 fn dualsplit() -> dualsplit::Options {
     use dualsplit::Options;
-    let preset = one_of(&[Options::small(), Options::balanced(), Options::fast()]);
-    let options = Options { leaf_size: word(), intersection_cost: float(), carve_threshold: float() };
-    if word() == 0 { preset } else { options }
+    let preset = one_of(&[Options::small(), Options::balanced(), Options::fast(), Options::quick()]);
+    Options { leaf_size: word(), intersection_cost: float(), carve_threshold: float(), ..preset }
 }

@@ -1,4 +1,4 @@
-//! Pictures, tile by tile.
+//! Pictures, tile by tile, and what sensors see of the same scene.
 
 use core::hint::black_box;
 
@@ -8,7 +8,10 @@ use hitscan::{
     render::{Camera, Light, Material, Materials, Numbers, Renderer, Terms},
 };
 
-use crate::input::{aabb, float, some, sphere, vector, word};
+use crate::{
+    input::{aabb, float, some, sphere, vector, word},
+    sensor,
+};
 
 /// Renders with every kind of camera, light and material.
 pub fn all() {
@@ -34,6 +37,7 @@ pub fn all() {
         black_box(pixels);
     }
     black_box(renderer.pixel(word(), word()));
+    sensor::sees(&scene);
 }
 
 fn camera() -> Camera {

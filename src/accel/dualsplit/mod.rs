@@ -14,11 +14,12 @@ mod lattice;
 mod node;
 mod open;
 mod options;
+mod quick;
 mod split;
 mod stage;
 mod traverse;
 
-pub use options::Options;
+pub use options::{Method, Options};
 pub use traverse::DualSplitTraversal;
 
 use self::{
@@ -80,8 +81,7 @@ pub struct DualSplit<'a> {
 impl<'a> DualSplit<'a> {
     /// Builds a tree over `primitives` in the free words of `arena`, of which it keeps only the tree.
     ///
-    /// O(n log n) time, per primitive and level in integers. Neither recursion nor heap; all scratch is in the arena, and
-    /// [`words`](Self::words) always suffice. The same primitives and options give the same words on every target.
+    /// O(n log n) time. Neither recursion nor heap; all scratch is in the arena, and [`words`](Self::words) always suffice. The same primitives and options give the same words on every target.
     ///
     /// # Errors
     ///
@@ -92,16 +92,24 @@ impl<'a> DualSplit<'a> {
         arena: &mut Arena<'a>,
         options: &Options,
     ) -> Result<Self, BuildError> {
-        let words = arena.build(|words| build::build(primitives, words, options))?;
+        let words = arena.build(|words| match options.method {
+            Method::Thorough => build::build(primitives, words, options),
+            Method::Quick => quick::build(primitives, words, options),
+        })?;
         // What was just built needs no check of every node.
         Ok(Self::view(words).unwrap_or_else(Self::nothing))
     }
 
-    /// Words of arena that suffice to build a tree over `primitives`, scratch included, and without which it does not go,
-    /// whatever the options.
+    /// Words of arena that suffice to build a tree over `primitives`, scratch included.
+    ///
+    /// Of [`Method::Thorough`] also words without which it does not go; [`Method::Quick`] makes do with a kilobyte beside
+    /// what the tree turns out to take, or beside 4 bytes per primitive if that is more.
     #[must_use]
-    pub const fn words(primitives: usize, _options: &Options) -> usize {
-        stage::words(primitives)
+    pub const fn words(primitives: usize, options: &Options) -> usize {
+        match options.method {
+            Method::Thorough => stage::words(primitives),
+            Method::Quick => quick::words(primitives, options.most()),
+        }
     }
 
     /// A tree over no primitives.

@@ -71,6 +71,16 @@ impl Metric {
         half_area(Axis::ALL.map(|axis| self.length(block.length(axis), axis)))
     }
 
+    /// Half the surface of a block, in two parts: that of the faces across an axis, and that of the others.
+    pub(super) fn sides(&self, block: &Block, axis: Axis) -> (f32, f32) {
+        let [x, y, z] = Axis::ALL.map(|axis| self.length(block.length(axis), axis));
+        match axis {
+            Axis::X => (y * z, x * (y + z)),
+            Axis::Y => (z * x, y * (z + x)),
+            Axis::Z => (x * y, z * (x + y)),
+        }
+    }
+
     /// What is left of half the surface of `implied` if a carve cuts off what is outside of `tight` at two faces, and these.
     fn carved(&self, implied: &Block, tight: &Block) -> (f32, [Face; 2]) {
         // By axis: the length as it is, without the longer of two gaps, and without both.

@@ -1,14 +1,14 @@
 //! The builder: count the references of each cell, sum the counts, and fill in the references from behind.
 //!
 //! ```text
-//! | header | blocks, if a bitmask | a count per cell, later where its references begin | references |
+//! | header | blocks, if a bitmask | a count per cell, later where its references begin | references | octants |
 //! ```
 //!
 //! At the end the offsets are made narrow, or fewer, where they stand, and the references moved up to them.
 
 use super::{
     HEADER_WORDS, MAX_COUNT,
-    cells::{block_words, narrow_offsets, narrow_references, number_words},
+    cells::{block_words, narrow_offsets, narrow_references, number_words, reference_words},
     cover::Frame,
     open::Header,
     options::{Form, Options},
@@ -32,7 +32,18 @@ pub(super) const fn words(primitives: usize, options: &Options) -> usize {
         usize::MAX => usize::MAX,
         bytes => bytes.div_ceil(4),
     };
-    (HEADER_WORDS + 1 + cells + block_words(options.form, cells)).saturating_add(body)
+    let narrow = narrow_offsets(most_references(primitives, options.bytes(primitives)));
+    let scratch = match options.form {
+        // The counts become the offsets.
+        Form::Full if narrow => 0,
+        _ => number_words(cells + 1, narrow),
+    };
+    body.saturating_add(scratch)
+}
+
+/// How many references certainly do not fit if there are more: a number takes two bytes or four, its octants take one.
+const fn most_references(primitives: usize, bytes: usize) -> usize {
+    bytes / if narrow_references(primitives) { 3 } else { 5 }
 }
 
 /// Writes a grid over `primitives` to the front of `words`; how many it took.
@@ -53,15 +64,21 @@ pub(super) fn build<P: Primitives + ?Sized>(
     let bounds = bounds_of(primitives).map_err(|primitive| BuildError::Bounds { primitive })?;
     let cells = options.cells(count as usize);
     let frame = Frame::new(&bounds, resolution(&bounds, cells));
-    let mut builder = Builder { primitives, options, allowed, bounds, words, frame, references: 0 };
-    if !builder.count(cells)? {
-        // The greatest density with which it fits; with a single cell it does.
+    let most = most_references(count as usize, allowed);
+    let narrow = narrow_offsets(most);
+    let mut builder = Builder { primitives, options, allowed, most, narrow, bounds, words, frame, references: 0 };
+    // Without cuts to be made, counting is as quick as an estimate.
+    let hopeless = options.clip && !builder.estimate(cells, 2);
+    if hopeless || !builder.count(cells)? {
+        // About the greatest density with which it fits, by an estimate that cuts nothing; with a single cell it does.
         let (mut fits, mut exceeds) = (1.0, cells as f32);
-        for _ in 0..6 {
+        for _ in 0..8 {
             let cells = math::sqrt(fits * exceeds);
-            *(if builder.count(cells as u32)? { &mut fits } else { &mut exceeds }) = cells;
+            *(if builder.estimate(cells as u32, 1) { &mut fits } else { &mut exceeds }) = cells;
         }
-        builder.count(fits as u32)?;
+        while !builder.count(fits as u32)? {
+            fits = math::greatest(fits * 0.6, 1.0);
+        }
     }
     Ok(builder.finish())
 }
@@ -70,6 +87,10 @@ struct Builder<'w, 'p, P: ?Sized> {
     primitives: &'p P,
     options: &'p Options,
     allowed: usize,
+    /// More references do not fit.
+    most: usize,
+    /// Whether the counts take two bytes.
+    narrow: bool,
     bounds: Aabb,
     words: &'w mut [u32],
     frame: Frame,
@@ -84,39 +105,52 @@ impl<P: Primitives + ?Sized> Builder<'_, '_, P> {
 
     /// Makes sure that there is room for the table and so many references.
     fn reserve(&self, references: usize) -> Result<(), Full> {
-        let narrow = narrow_references(self.primitives.len() as usize);
-        let at_least = self.table() + self.frame.cells() + 1 + number_words(references, narrow);
+        let references = reference_words(references, self.primitives.len() as usize);
+        let at_least = self.table() + number_words(self.frame.cells() + 1, self.narrow) + references;
         let available = self.words.len();
         if at_least <= available { Ok(()) } else { Err(Full { at_least, available }) }
+    }
+
+    /// Whether a grid of at most so many cells should be within so many times the bytes allowed.
+    fn estimate(&self, cells: u32, times: usize) -> bool {
+        let frame = Frame::new(&self.bounds, resolution(&self.bounds, cells));
+        let (mut references, primitives) = (0_usize, self.primitives.len());
+        for primitive in 0..primitives {
+            let clip = self.options.clip && self.primitives.is_certified(primitive);
+            references = references.saturating_add(frame.estimate(&self.primitives.bounds(primitive), clip));
+        }
+        let occupied = frame.cells().min(references);
+        let size = size(self.options.form, primitives as usize, frame.cells(), occupied, references);
+        size.saturating_mul(4) <= self.allowed.saturating_mul(times)
     }
 
     /// Counts the references of each of at most so many cells; whether the grid is then within the bytes allowed.
     fn count(&mut self, cells: u32) -> Result<bool, Full> {
         self.frame = Frame::new(&self.bounds, resolution(&self.bounds, cells));
+        let (frame, clip, first, narrow) = (&self.frame, self.options.clip, self.table(), self.narrow);
+        let (cells, primitives) = (frame.cells(), self.primitives.len() as usize);
+        if size(self.options.form, primitives, cells, 0, 0).saturating_mul(4) > self.allowed {
+            return Ok(false);
+        }
         self.reserve(0)?;
-        // More do not fit, whatever else there is. A reference takes two bytes or more.
-        let most = self.allowed / if narrow_references(self.primitives.len() as usize) { 2 } else { 4 };
-        let (frame, clip, first) = (&self.frame, self.options.clip, self.table());
-        let cells = frame.cells();
-        let table = self.words.get_mut(first..=first + cells).unwrap_or_default();
+        let table = self.words.get_mut(first..first + number_words(cells + 1, narrow)).unwrap_or_default();
         table.fill(0);
         let mut references = 0;
         for primitive in 0..self.primitives.len() {
-            let fits = frame.cover(self.primitives, primitive, clip, |row| {
-                references += row.len();
-                let cells = table.get_mut(row.start as usize..row.end as usize).unwrap_or_default();
-                let fits = references <= most;
-                if fits {
-                    cells.iter_mut().for_each(|count| *count += 1);
+            let fits = frame.cover(self.primitives, primitive, clip, |cell, _| {
+                references += 1;
+                let cell = cell as usize;
+                if let Some(word) = table.get_mut(if narrow { cell / 2 } else { cell }) {
+                    *word = word.wrapping_add(if narrow { 1 << (16 * (cell % 2)) } else { 1 });
                 }
-                fits
+                references <= self.most
             });
             if !fits {
                 return Ok(false);
             }
         }
-        let occupied = table.iter().filter(|&&count| count > 0).count();
-        let size = size(self.options.form, self.primitives.len() as usize, cells, occupied, references);
+        let occupied = (0..cells).filter(|&cell| get(table, cell, narrow) > 0).count();
+        let size = size(self.options.form, primitives, cells, occupied, references);
         if size.saturating_mul(4) > self.allowed {
             return Ok(false);
         }
@@ -146,22 +180,26 @@ impl<P: Primitives + ?Sized> Builder<'_, '_, P> {
     /// Counts become ends and, reference by reference, beginnings.
     fn fill(&mut self) {
         let (frame, clip) = (&self.frame, self.options.clip);
-        let narrow = narrow_references(self.primitives.len() as usize);
+        let (narrow, narrow_numbers) = (self.narrow, narrow_references(self.primitives.len() as usize));
         let (first, cells) = (self.table(), frame.cells());
         let (_, body) = self.words.split_at_mut_checked(first).unwrap_or_default();
-        let (table, references) = body.split_at_mut_checked(cells + 1).unwrap_or_default();
+        let (table, references) = body.split_at_mut_checked(number_words(cells + 1, narrow)).unwrap_or_default();
         let mut sum = 0;
-        for count in table.iter_mut() {
-            sum += *count;
-            *count = sum;
+        for cell in 0..=cells {
+            sum += get(table, cell, narrow);
+            set(table, cell, sum, narrow);
         }
-        let used = number_words(self.references, narrow);
+        let used = reference_words(self.references, self.primitives.len() as usize);
         references.iter_mut().take(used).for_each(|word| *word = 0);
+        let numbers = number_words(self.references, narrow_numbers);
+        let (references, octants) = references.split_at_mut_checked(numbers).unwrap_or_default();
         for primitive in (0..self.primitives.len()).rev() {
-            frame.cover(self.primitives, primitive, clip, |row| {
-                for end in table.get_mut(row.start as usize..row.end as usize).unwrap_or_default() {
-                    *end = end.wrapping_sub(1);
-                    put(references, *end as usize, primitive, narrow);
+            frame.cover(self.primitives, primitive, clip, |cell, bits| {
+                let end = get(table, cell as usize, narrow).wrapping_sub(1);
+                set(table, cell as usize, end, narrow);
+                set(references, end as usize, primitive, narrow_numbers);
+                if let Some(word) = octants.get_mut(end as usize / 4) {
+                    *word |= bits << (end % 4 * 8);
                 }
                 true
             });
@@ -171,20 +209,20 @@ impl<P: Primitives + ?Sized> Builder<'_, '_, P> {
     /// Writes the blocks, brings the offsets into their final form and the references behind them; how many offsets there
     /// are before the last, and the length of all.
     fn pack(&mut self) -> (u32, usize) {
-        let narrow = narrow_offsets(self.references);
+        let (counts, narrow) = (self.narrow, narrow_offsets(self.references));
         let (table, cells) = (self.table(), self.frame.cells());
         let (front, body) = self.words.split_at_mut_checked(table).unwrap_or_default();
         let (_, blocks) = front.split_at_mut_checked(HEADER_WORDS).unwrap_or_default();
         let mut entries = 0;
         // An entry never stands behind the cell that it is of, so that no offset is overwritten before it is read.
-        let mut next = body.first().copied().unwrap_or(0);
+        let mut next = get(body, 0, counts);
         for cell in 0..cells {
             let begin = next;
-            next = body.get(cell + 1).copied().unwrap_or(0);
+            next = get(body, cell + 1, counts);
             if self.options.form == Form::Bitmask {
                 if cell % 32 == 0 {
-                    put(blocks, cell / 32 * 2, 0, false);
-                    put(blocks, cell / 32 * 2 + 1, entries as u32, false);
+                    set(blocks, cell / 32 * 2, 0, false);
+                    set(blocks, cell / 32 * 2 + 1, entries as u32, false);
                 }
                 if begin == next {
                     continue;
@@ -193,33 +231,38 @@ impl<P: Primitives + ?Sized> Builder<'_, '_, P> {
                     *bits |= 1 << (cell % 32);
                 }
             }
-            append(body, entries, begin, narrow);
+            set(body, entries, begin, narrow);
             entries += 1;
         }
-        append(body, entries, next, narrow);
-
-        let offsets = number_words(entries + 1, narrow);
-        let references = number_words(self.references, narrow_references(self.primitives.len() as usize));
-        for index in 0..references {
-            let word = body.get(cells + 1 + index).copied().unwrap_or(0);
-            put(body, offsets + index, word, false);
+        set(body, entries, next, narrow);
+        if narrow && entries.is_multiple_of(2) {
+            // Nothing is left of what stood in the other half.
+            set(body, entries + 1, 0, narrow);
         }
-        (entries as u32, table + offsets + references)
+
+        let (from, to) = (number_words(cells + 1, counts), number_words(entries + 1, narrow));
+        let references = reference_words(self.references, self.primitives.len() as usize);
+        for index in 0..references {
+            let word = get(body, from + index, false);
+            set(body, to + index, word, false);
+        }
+        (entries as u32, table + to + references)
     }
 }
 
-/// Sets a number; where there are two in a word, it was 0.
-fn put(words: &mut [u32], index: usize, number: u32, narrow: bool) {
+/// A number; there are two in a word if they are `narrow`.
+fn get(words: &[u32], index: usize, narrow: bool) -> u32 {
+    match words.get(if narrow { index / 2 } else { index }) {
+        Some(word) if narrow => word >> (16 * (index % 2)) & 0xffff,
+        Some(word) => *word,
+        None => 0,
+    }
+}
+
+/// Sets a number.
+fn set(words: &mut [u32], index: usize, number: u32, narrow: bool) {
     if let Some(word) = words.get_mut(if narrow { index / 2 } else { index }) {
-        *word = if narrow { *word | number << (16 * (index % 2)) } else { number };
-    }
-}
-
-/// Sets a number behind all others: the first of two in a word replaces what was there.
-fn append(words: &mut [u32], index: usize, number: u32, narrow: bool) {
-    if narrow && index.is_multiple_of(2) {
-        put(words, index / 2, number, false);
-    } else {
-        put(words, index, number, narrow);
+        let shift = 16 * (index % 2);
+        *word = if narrow { *word & !(0xffff << shift) | number << shift } else { number };
     }
 }

@@ -51,7 +51,12 @@ pub(super) const fn size(form: Form, primitives: usize, cells: usize, occupied: 
     let offsets = number_words(entries.saturating_add(1), narrow_offsets(references));
     (HEADER_WORDS + block_words(form, cells))
         .saturating_add(offsets)
-        .saturating_add(number_words(references, narrow_references(primitives)))
+        .saturating_add(reference_words(references, primitives))
+}
+
+/// Words of references with their octants.
+pub(super) const fn reference_words(references: usize, primitives: usize) -> usize {
+    number_words(references, narrow_references(primitives)).saturating_add(references.div_ceil(4))
 }
 
 impl Cells<'_> {

@@ -7,11 +7,14 @@
 mod build;
 mod cells;
 mod cover;
+mod line;
+mod met;
 mod open;
 mod options;
 mod resolution;
 mod traverse;
 
+pub use met::Met;
 pub use options::{Form, Options};
 pub use traverse::GridTraversal;
 
@@ -27,6 +30,9 @@ use crate::{
 
 /// Words before the table: counts, resolution and bounds.
 const HEADER_WORDS: usize = 13;
+
+/// The most cells along an axis: two planes of the lattice for each.
+const MAX_RESOLUTION: u32 = Lattice::MAX / 2;
 
 /// The most cells, and the most primitives.
 const MAX_COUNT: u32 = 1 << 28;
@@ -49,6 +55,8 @@ pub struct Grid<'a> {
     words: &'a [u32],
     cells: Cells<'a>,
     references: References<'a>,
+    /// A byte per reference: in which octants of the cell the primitive is. Along x it counts 4, along y 2, along z 1.
+    octants: &'a [u8],
     reference_count: u32,
     primitives: u32,
     resolution: [u32; 3],
@@ -89,11 +97,12 @@ impl<'a> Grid<'a> {
             words: &[],
             cells: Cells::NONE,
             references: References::IDENTITY,
+            octants: &[],
             reference_count: 0,
             primitives: 0,
             resolution: [1; 3],
             bounds: Aabb::EMPTY,
-            lattice: Lattice::over(&Aabb::EMPTY, [1; 3]),
+            lattice: Lattice::over(&Aabb::EMPTY, [2; 3]),
         }
     }
 
@@ -128,8 +137,8 @@ impl<'a> Accelerator for Grid<'a> {
     }
 
     #[inline]
-    fn traverse(&self, ray: &PreparedRay) -> GridTraversal<'a> {
-        GridTraversal::new(self, ray)
+    fn traverse(&self, _: &PreparedRay) -> GridTraversal<'a> {
+        GridTraversal::new(self)
     }
 }
 
@@ -174,7 +183,7 @@ impl<'a> Hierarchy for Grid<'a> {
             Axis::Y => Block { first: [x, first, z], count: [nx, count, nz] },
             Axis::Z => Block { first: [x, y, first], count: [nx, ny, count] },
         };
-        let (below, above) = cell.bounds.split(axis, self.lattice.position(axis, first + half));
+        let (below, above) = cell.bounds.split(axis, self.lattice.position(axis, (first + half) * 2));
         Inside::Cells([
             Some(Cell { bounds: below, node: with(first, half) }),
             Some(Cell { bounds: above, node: with(first + half, count - half) }),

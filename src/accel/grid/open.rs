@@ -3,15 +3,15 @@
 use glam::Vec3;
 
 use super::{
-    Grid, HEADER_WORDS, MAX_COUNT,
-    cells::{Cells, block_words, narrow_offsets, narrow_references, number_words},
+    Grid, HEADER_WORDS, MAX_COUNT, MAX_RESOLUTION,
+    cells::{Cells, block_words, narrow_offsets, narrow_references, number_words, reference_words},
     cover::Frame,
     options::Form,
 };
 use crate::{
     accel::{Malformed, Reason, leaf::References},
     asset,
-    geometry::{Aabb, Lattice},
+    geometry::Aabb,
 };
 
 /// The header as it stands in the words.
@@ -65,7 +65,7 @@ impl<'a> Grid<'a> {
         let header = Header::from_words(words).map_err(malformed)?;
         let frame = Frame::new(&header.bounds, header.resolution);
         // Clamped where it is out of range.
-        let whole = header.resolution.iter().all(|count| (1..=Lattice::MAX).contains(count));
+        let whole = header.resolution.iter().all(|count| (1..=MAX_RESOLUTION).contains(count));
         if !whole || frame.cells() > MAX_COUNT as usize {
             return Err(malformed((4, Reason::Header)));
         }
@@ -75,9 +75,8 @@ impl<'a> Grid<'a> {
         }
         let grid = Self::view(words).ok_or(malformed((0, Reason::Length)))?;
         grid.check_table(&header, frame.cells()).map_err(malformed)?;
-        let references = words
-            .len()
-            .saturating_sub(number_words(header.references as usize, narrow_references(header.primitives as usize)));
+        let references =
+            words.len().saturating_sub(reference_words(header.references as usize, header.primitives as usize));
         for index in 0..header.references {
             if grid.references.get(index) >= header.primitives {
                 return Err(malformed((references, Reason::Primitive)));
@@ -127,13 +126,15 @@ impl<'a> Grid<'a> {
         let (offsets, references) = rest.split_at_checked(number_words(entries.checked_add(1)?, narrow))?;
         let offsets = if narrow { References::narrow(offsets) } else { References::wide(offsets) };
         let narrow = narrow_references(header.primitives as usize);
-        if references.len() != number_words(count, narrow) {
+        let (references, octants) = references.split_at_checked(number_words(count, narrow))?;
+        if octants.len() != count.div_ceil(4) {
             return None;
         }
         Some(Self {
             words,
             cells: Cells { blocks, offsets },
             references: if narrow { References::narrow(references) } else { References::wide(references) },
+            octants: bytemuck::try_cast_slice(octants).ok()?,
             reference_count: header.references,
             primitives: header.primitives,
             resolution: header.resolution,

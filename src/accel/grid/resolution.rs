@@ -1,7 +1,8 @@
 //! How many cells along each axis.
 
+use super::MAX_RESOLUTION;
 use crate::{
-    geometry::{Aabb, Lattice},
+    geometry::Aabb,
     math::{self, greatest, least},
 };
 
@@ -28,7 +29,7 @@ pub(super) fn resolution(bounds: &Aabb, cells: u32) -> [u32; 3] {
     } else {
         count
     };
-    let cubes = |side: f32| ((along * side) as u32).clamp(1, Lattice::MAX);
+    let cubes = |side: f32| ((along * side) as u32).clamp(1, MAX_RESOLUTION);
     let mut counts = [cubes(x), cubes(y), cubes(z)];
     // There may be a few too many by rounding.
     let product = |[x, y, z]: [u32; 3]| u64::from(x) * u64::from(y) * u64::from(z);

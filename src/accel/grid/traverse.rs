@@ -1,7 +1,12 @@
-use super::{Grid, cells::Cells};
+use super::{
+    Grid,
+    cells::Cells,
+    line::{Line, Planes},
+    met::Met,
+};
 use crate::{
-    accel::{Leaf, Step, Traversal, leaf::References},
-    geometry::{Axis, AxisView, Lattice, PreparedRay, beyond, slack},
+    accel::{Step, Traversal, leaf::References},
+    geometry::{Aabb, Axis, AxisView, Lattice, PreparedRay, beyond, slack},
     math::{greatest, least},
 };
 
@@ -16,16 +21,18 @@ use crate::{
 pub struct GridTraversal<'a> {
     cells: Cells<'a>,
     references: References<'a>,
+    octants: &'a [u8],
+    bounds: Aabb,
     lattice: Lattice,
-    slack: f32,
-    /// Where the ray leaves the bounds.
-    exit: f32,
-    /// Where its interval within them begins.
-    enter: f32,
-    /// Where it has left all cells before the one that the last crossing led to.
-    left: f32,
     /// Where the walk is along each axis.
     lines: [Line; 3],
+    /// Where the ray entered the cell that the last crossing led to.
+    enter: f32,
+    /// No plane crossed at `t` is left behind later than this after it.
+    margin: f32,
+    /// Where the ray leaves the bounds.
+    exit: f32,
+    slack: f32,
     /// The number of the cell that the last crossing led to.
     at: u32,
     /// Whether the first cells are still to be found.
@@ -37,22 +44,6 @@ pub struct GridTraversal<'a> {
     tie: Tie,
 }
 
-/// A place along an axis, counted along the ray.
-#[derive(Clone, Copy, Debug)]
-struct Line {
-    /// Where the ray enters the next cell; never if there is none.
-    next: f32,
-    /// Where it leaves this cell.
-    exit: f32,
-    /// The number of the cell's far plane, and what is added to come to the next.
-    plane: f32,
-    turn: f32,
-    /// What is added to the number of the cell.
-    stride: u32,
-    /// Cells behind this one.
-    behind: u32,
-}
-
 /// Cells that are visited at the same crossing: all combinations of going back by up to so many along each axis.
 #[derive(Clone, Copy, Debug, Default)]
 struct Tie {
@@ -62,138 +53,104 @@ struct Tie {
     back: [u32; 3],
 }
 
-impl Line {
-    /// No cells.
-    const NOWHERE: Self = Self { next: f32::INFINITY, exit: 0.0, plane: 0.0, turn: 0.0, stride: 0, behind: 0 };
-
-    /// Where the ray enters the half-space behind a plane, and where it leaves that before it.
-    #[inline(always)]
-    fn cross(plane: f32, (origin, step): (f32, f32), view: &AxisView, slack: f32) -> (f32, f32) {
-        let distance = origin + plane * step - view.origin;
-        (distance * view.entry, distance * view.exit + slack)
-    }
-
-    /// To the next cell, of which there is one.
-    #[inline(always)]
-    fn forward(&mut self, planes: (f32, f32), view: &AxisView, slack: f32) {
-        self.behind -= 1;
-        self.plane += self.turn;
-        (self.next, self.exit) = Self::cross(self.plane, planes, view, slack);
-        if self.behind == 0 {
-            self.next = f32::INFINITY;
-        }
-    }
-
-    /// Goes to the last cell along an axis that the ray enters up to `enter`: its number, and where the ray leaves the
-    /// cell before.
-    fn find(
-        &mut self,
-        lattice: &Lattice,
-        axis: Axis,
-        stride: u32,
-        enter: f32,
-        ray: &PreparedRay,
-        slack: f32,
-    ) -> (u32, f32) {
-        let view = &ray.views[axis as usize];
-        let (planes, count) = (lattice.along(axis as u32), lattice.last(axis));
-        let (origin, step) = planes;
-        // Where it should be; roundings do not matter.
-        let point = axis.of(ray.ray().origin) + enter * axis.of(ray.ray().direction);
-        let guess = (((point - origin) / step) as u32).min(count.saturating_sub(1));
-        let (plane, turn, stride, behind) = if view.ascends() {
-            (guess, 1.0, stride, count - guess)
-        } else {
-            (guess + 1, -1.0, stride.wrapping_neg(), guess + 1)
-        };
-        // On the near plane, before the cell.
-        *self = Self { next: 0.0, exit: 0.0, plane: plane as i32 as f32, turn, stride, behind };
-        (self.next, self.exit) = Self::cross(self.plane, planes, view, slack);
-        while self.behind < count && self.next > enter {
-            self.behind += 1;
-            self.plane -= turn;
-            (self.next, self.exit) = Self::cross(self.plane, planes, view, slack);
-        }
-        loop {
-            // Written so that NaN, the ray in the plane, is never left and goes on.
-            let left = if self.exit < f32::INFINITY { self.exit } else { f32::INFINITY };
-            let left = if self.behind == count { f32::NEG_INFINITY } else { left };
-            self.forward(planes, view, slack);
-            if self.behind == 0 || self.next > enter {
-                return (if turn > 0.0 { count - 1 - self.behind } else { self.behind }, left);
-            }
-        }
-    }
-
-    /// How many cells back the ray has not left at `t`.
-    fn back(&self, t: f32, lattice: &Lattice, axis: Axis, ray: &PreparedRay, slack: f32) -> u32 {
-        let (planes, view) = (lattice.along(axis as u32), &ray.views[axis as usize]);
-        let before = lattice.last(axis) - 1 - self.behind;
-        let (mut back, mut plane) = (0, self.plane - self.turn);
-        while back < before && !(Self::cross(plane, planes, view, slack).1 < t) {
-            back += 1;
-            plane -= self.turn;
-        }
-        back
-    }
-}
-
 impl<'a> GridTraversal<'a> {
     /// The walk along `ray`, before its beginning.
-    #[inline]
-    pub(super) fn new(grid: &Grid<'a>, ray: &PreparedRay) -> Self {
+    #[inline(always)]
+    pub(super) fn new(grid: &Grid<'a>) -> Self {
         // The first cells are found where this is when it is walked: it need not be moved then.
-        let mut traversal = Self {
+        Self {
             cells: grid.cells,
             references: grid.references,
+            octants: grid.octants,
+            bounds: grid.bounds,
             lattice: grid.lattice,
-            slack: 0.0,
-            enter: 0.0,
-            exit: 0.0,
-            left: f32::NEG_INFINITY,
             lines: [Line::NOWHERE; 3],
+            enter: 0.0,
+            margin: 0.0,
+            exit: f32::NEG_INFINITY,
+            slack: 0.0,
             at: 0,
-            begins: false,
+            begins: grid.primitives > 0,
             is_new: false,
             is_tied: false,
             tie: Tie { most: [0; 3], back: [0; 3] },
-        };
-        if let Some((enter, exit)) = grid.bounds.interval(ray) {
-            traversal.enter = greatest(enter, ray.ray().t_min);
-            traversal.exit = least(exit, beyond(ray.ray().t_max));
-            traversal.begins = grid.primitives > 0 && !(traversal.enter > traversal.exit);
         }
-        traversal
     }
 
-    /// Finds the first cells.
+    /// How many cells there are along an axis.
+    #[inline(always)]
+    const fn count(&self, axis: Axis) -> u32 {
+        self.lattice.last(axis) / 2
+    }
+
+    /// Finds the first cells, if there are any.
     #[inline(never)]
     fn begin(&mut self, ray: &PreparedRay) {
-        (self.begins, self.is_new) = (false, true);
-        (self.slack, self.at) = (slack(self.enter), 0);
-        let mut stride = 1;
-        for axis in [Axis::Z, Axis::Y, Axis::X] {
+        self.begins = false;
+        let Some((enter, exit)) = self.bounds.interval(ray) else { return };
+        let enter = greatest(enter, ray.ray().t_min);
+        let exit = least(exit, beyond(ray.ray().t_max));
+        if enter > exit {
+            return;
+        }
+        let slack = slack(enter);
+        (self.enter, self.exit, self.slack, self.is_new) = (enter, exit, slack, true);
+        // Twice the widening of exits.
+        self.margin = greatest(enter.abs(), exit.abs()) * (1.0 / 32768.0) + 2.0 * slack;
+        let (mut at, mut stride, mut is_odd) = (0_u32, 1_u32, false);
+        for (axis, lower) in [(Axis::Z, 0x55), (Axis::Y, 0x33), (Axis::X, 0x0f)] {
+            let planes = Planes::of(&self.lattice, ray, axis as usize);
+            let count = self.count(axis);
+            let point = planes.view.origin + enter * axis.of(ray.ray().direction);
+            let line = Line::about(&planes, count, point, stride, lower);
+            at = at.wrapping_add(line.number(count).wrapping_mul(stride));
+            stride = stride.wrapping_mul(count);
+            self.lines[axis as usize] = line;
+            // Written so that NaN is odd.
+            let near = line.plane - line.turn;
+            let is_off = planes.entry(near) > enter || !(line.next > enter);
+            let is_tied = line.before(count) > 0 && !(planes.exit(near, slack) < enter);
+            is_odd |= is_off || is_tied || !(planes.view.exit.abs() < f32::INFINITY);
+        }
+        self.at = at;
+        if is_odd {
+            self.begin_oddly(ray);
+        }
+    }
+
+    /// Finds the first cell where roundings did matter, more than one if the ray has not left those before, and whether
+    /// an exit is no number.
+    #[inline(never)]
+    fn begin_oddly(&mut self, ray: &PreparedRay) {
+        let mut number = 0_u32;
+        for axis in Axis::ALL {
+            let (planes, count) = (Planes::of(&self.lattice, ray, axis as usize), self.count(axis));
             let line = &mut self.lines[axis as usize];
-            let (number, left) = line.find(&self.lattice, axis, stride, self.enter, ray, self.slack);
-            self.left = greatest(left, self.left);
-            self.at = self.at.wrapping_add(number.wrapping_mul(stride));
-            stride = stride.wrapping_mul(self.lattice.last(axis));
+            line.settle(&planes, count, self.enter);
+            number = number.wrapping_mul(count).wrapping_add(line.number(count));
+            // A ray along the planes has left one behind or never will. Other exits that are no numbers are too late.
+            let AxisView { entry, exit, .. } = planes.view;
+            let is_past = planes.exit(line.plane - line.turn, self.slack) < f32::MIN && entry.abs() > f32::MAX;
+            if !(exit.abs() < f32::INFINITY || is_past) {
+                self.margin = f32::INFINITY;
+            }
         }
-        if !(self.left < self.enter) {
-            self.tie(ray, self.enter, None);
-        }
+        self.at = number;
+        self.tie(ray, self.enter, None);
     }
 
     /// Notes the cells that the ray has not left at `t`, when it crosses a plane of the axis given.
     #[inline(never)]
     fn tie(&mut self, ray: &PreparedRay, t: f32, crossed: Option<usize>) {
         self.tie = Tie::default();
-        for ((axis, most), line) in Axis::ALL.into_iter().zip(&mut self.tie.most).zip(&self.lines) {
+        for axis in Axis::ALL {
             if Some(axis as usize) != crossed {
-                *most = line.back(t, &self.lattice, axis, ray, self.slack);
+                let planes = Planes::of(&self.lattice, ray, axis as usize);
+                let line = &self.lines[axis as usize];
+                self.tie.most[axis as usize] = line.back(&planes, self.count(axis), t, self.slack);
             }
         }
-        self.is_tied = true;
+        self.is_tied = self.tie.most != [0; 3];
     }
 
     /// Goes to the next cell of the same crossing, if there is one.
@@ -211,44 +168,82 @@ impl<'a> GridTraversal<'a> {
     }
 
     /// The number of the cell at hand.
-    #[inline(always)]
-    fn cell(&self) -> u32 {
-        if !self.is_tied {
-            return self.at;
-        }
-        let places = self.lines.iter().zip(self.tie.back);
-        places.fold(self.at, |at, (line, back)| at.wrapping_sub(line.stride.wrapping_mul(back)))
-    }
-
-    /// The axis along which to go on where no plane is crossed at a time that is a number.
     #[inline(never)]
-    fn any_axis(&self) -> Option<usize> {
-        self.lines.iter().position(|line| line.behind > 0)
+    fn tied_cell(&self, at: u32) -> u32 {
+        let places = self.lines.iter().zip(self.tie.back);
+        places.fold(at, |at, (line, back)| at.wrapping_sub(line.stride.wrapping_mul(back)))
     }
 
-    /// On to the next cell that holds primitives.
+    /// The octants of the cell at hand whose three intervals have a point in common with each other and with the ray's,
+    /// and perhaps more.
     #[inline(always)]
-    fn advance<const BOUNDED: bool>(&mut self, ray: &PreparedRay, t_max: f32, budget: &mut u32) -> Step<Leaf<'a>> {
-        let limit = least(beyond(t_max), self.exit);
-        let finite = least(limit, f32::MAX);
+    fn on_the_way(&self, ray: &PreparedRay, enter: f32, limit: f32) -> u32 {
+        let margin = self.margin;
+        let [x, y, z] = &self.lines;
+        let exit = least(least(least(x.next, y.next), z.next), limit) + margin;
+        let mut octants = 0xff;
+        // Each is left out for a reason; NaN is none.
+        let [x, y, z] = [(0, x), (1, y), (2, z)].map(|(axis, line)| {
+            let entry = Planes::of(&self.lattice, ray, axis).entry(line.plane - 0.5 * line.turn);
+            let left = entry + margin;
+            if left < enter {
+                octants &= !line.near;
+            }
+            if entry > exit {
+                octants &= line.near;
+            }
+            (entry, left, line.near)
+        });
+        for ((a_entry, a_left, a_near), (b_entry, b_left, b_near)) in [(x, y), (y, z), (z, x)] {
+            if a_entry > b_left {
+                octants &= !(b_near & !a_near);
+            }
+            if b_entry > a_left {
+                octants &= !(a_near & !b_near);
+            }
+        }
+        octants
+    }
+
+    /// The primitives of a cell that the ray may meet, if there are any.
+    #[inline(always)]
+    fn met(&self, cell: u32, ray: &PreparedRay, enter: f32, limit: f32) -> Option<Met<'a>> {
+        let (first, count) = self.cells.of(cell)?;
+        let octants = if self.is_tied { 0xff } else { self.on_the_way(ray, enter, limit) };
+        Met::of(self.references, self.octants, first, count, octants)
+    }
+
+    /// Crosses the next plane of an axis; what is added to the number of the cell.
+    #[inline(always)]
+    fn cross(&mut self, ray: &PreparedRay, axis: usize) -> u32 {
+        let planes = Planes::of(&self.lattice, ray, axis);
+        let Some(line) = self.lines.get_mut(axis) else { return 0 };
+        line.forward(&planes);
+        line.stride
+    }
+
+    /// On to the next cell that holds primitives on the ray's way.
+    #[inline(always)]
+    fn advance<const BOUNDED: bool>(&mut self, ray: &PreparedRay, t_max: f32, budget: &mut u32) -> Step<Met<'a>> {
         if self.begins {
             self.begin(ray);
         }
-        let (slack, mut at, mut left) = (self.slack, self.at, self.left);
-        let mut is_new = self.is_new;
-        loop {
+        let limit = least(beyond(t_max), self.exit);
+        let finite = least(limit, f32::MAX);
+        let margin = self.margin;
+        let (mut at, mut enter, mut is_new) = (self.at, self.enter, self.is_new);
+        let step = loop {
             if is_new {
                 if BOUNDED {
                     if *budget == 0 {
-                        (self.at, self.left, self.is_new) = (at, left, true);
-                        return Step::Paused;
+                        break Step::Paused;
                     }
                     *budget -= 1;
                 }
-                let cell = if self.is_tied { self.cell() } else { at };
-                if let Some((first, count)) = self.cells.of(cell) {
-                    (self.at, self.left, self.is_new) = (at, left, false);
-                    return Step::Leaf(Leaf::of(self.references, first, count));
+                let cell = if self.is_tied { self.tied_cell(at) } else { at };
+                if let Some(met) = self.met(cell, ray, enter, limit) {
+                    is_new = false;
+                    break Step::Leaf(met);
                 }
             }
             is_new = true;
@@ -257,47 +252,47 @@ impl<'a> GridTraversal<'a> {
             }
             // Across the nearest plane.
             let [x, y, z] = &self.lines;
-            let (mut axis, mut t) = (0, x.next);
-            if y.next < t {
-                (axis, t) = (1, y.next);
-            }
-            if z.next < t {
-                (axis, t) = (2, z.next);
-            }
+            let is_y = y.next < x.next;
+            let t = if is_y { y.next } else { x.next };
+            let is_z = z.next < t;
+            let t = if is_z { z.next } else { t };
+            let mut axis = if is_z { 2 } else { usize::from(is_y) };
             if t > finite {
-                match self.any_axis() {
+                // All at infinity.
+                match self.lines.iter().position(|line| line.behind > 0) {
                     Some(other) if !(t > limit) => axis = other,
                     _ => {
-                        (self.at, self.left, self.is_new) = (at, left, false);
-                        return Step::Done;
+                        is_new = false;
+                        break Step::Done;
                     }
                 }
             }
-            let Some(line) = self.lines.get_mut(axis) else { return Step::Done };
-            let exit = line.exit;
-            line.forward(self.lattice.along(axis as u32), &ray.views[axis & 3], slack);
-            at = at.wrapping_add(line.stride);
-            // Written so that NaN, the ray in a plane, is a tie.
-            if !(left < t) {
-                self.at = at;
+            at = at.wrapping_add(match axis {
+                0 => self.cross(ray, 0),
+                1 => self.cross(ray, 1),
+                _ => self.cross(ray, 2),
+            });
+            if !(enter + margin < t) {
                 self.tie(ray, t, Some(axis));
             }
-            left = greatest(exit, left);
-        }
+            enter = t;
+        };
+        (self.at, self.enter, self.is_new) = (at, enter, is_new);
+        step
     }
 }
 
 impl<'a> Traversal for GridTraversal<'a> {
-    type Leaf = Leaf<'a>;
+    type Leaf = Met<'a>;
 
-    fn next_leaf(&mut self, ray: &PreparedRay, t_max: f32) -> Option<Leaf<'a>> {
+    fn next_leaf(&mut self, ray: &PreparedRay, t_max: f32) -> Option<Met<'a>> {
         match self.advance::<false>(ray, t_max, &mut 0) {
             Step::Leaf(leaf) => Some(leaf),
             Step::Paused | Step::Done => None,
         }
     }
 
-    fn step(&mut self, ray: &PreparedRay, t_max: f32, budget: &mut u32) -> Step<Leaf<'a>> {
+    fn step(&mut self, ray: &PreparedRay, t_max: f32, budget: &mut u32) -> Step<Met<'a>> {
         self.advance::<true>(ray, t_max, budget)
     }
 }

@@ -24,7 +24,7 @@ use crate::{
 /// See [`KdTree::words`](super::KdTree::words).
 pub(super) const fn words(primitives: usize, options: &Options, form: Form) -> usize {
     // In the stream a reference takes a word and a node two, of which the budget may have counted half.
-    let bytes = options.bytes(primitives, form);
+    let bytes = options.room(primitives, form);
     let (stream, packed) = (bytes / 2, bytes / 4);
     // Beside the stream stand first the items and what is sorted of them, then the references on their way behind the nodes.
     let sorted = primitives.saturating_mul(SCRATCH_WORDS);
@@ -58,35 +58,34 @@ pub(super) fn build<P: Primitives + ?Sized>(
         return Err(BuildError::Budget { at_least, allowed });
     }
     let bounds = bounds_of(primitives).map_err(|primitive| BuildError::Bounds { primitive })?;
-    let mut attempt = |options: &Options| Builder::new(primitives, words, options, bounds, form)?.run();
-
-    let built = attempt(options)?;
-    if options.max_bytes.is_none() || !built.cut_short {
-        return Ok(built.words);
+    let mut attempt = |byte_cost, bytes| {
+        let options = Options { byte_cost, ..*options };
+        Builder::new(primitives, words, &options, bounds, form)?.run(bytes)
+    };
+    if !options.is_searched() {
+        return attempt(options.byte_cost, allowed);
     }
-    if options.split != Split::Sah {
-        return Ok(built.words);
+    // Within more than is allowed, so that no cell becomes a leaf for want of bytes while others do not need theirs: the
+    // least cost of a byte at which the whole fits.
+    let room = options.room(count as usize, form);
+    let built = attempt(options.byte_cost, room)?;
+    if built * 4 <= allowed {
+        return Ok(built);
     }
-    // The least cost of a byte at which no cell has to become a leaf for want of bytes.
     let least = math::greatest(options.byte_cost, 1.0 / 64.0);
     let (mut exceeds, mut fits) = (least, least * 16_384.0);
     for _ in 0..9 {
         let byte_cost = math::sqrt(fits * exceeds);
-        let cut_short = attempt(&Options { byte_cost, ..*options })?.cut_short;
-        *(if cut_short { &mut exceeds } else { &mut fits }) = byte_cost;
+        *(if attempt(byte_cost, room)? * 4 > allowed { &mut exceeds } else { &mut fits }) = byte_cost;
     }
-    Ok(attempt(&Options { byte_cost: fits, ..*options })?.words)
+    match attempt(fits, room)? {
+        words if words * 4 <= allowed => Ok(words),
+        _ => attempt(fits, allowed),
+    }
 }
 
 /// The share of rays that choose where to go by the number of primitives instead of the surface of cells.
 const CLOSE_UP: f32 = 0.125;
-
-/// What an attempt came to.
-struct Built {
-    words: usize,
-    /// Whether a cell became a leaf because its children would have exceeded the budget.
-    cut_short: bool,
-}
 
 struct Builder<'w, 'p, P: ?Sized> {
     primitives: &'p P,
@@ -106,7 +105,6 @@ struct Builder<'w, 'p, P: ?Sized> {
     depth: u32,
     /// Half-words that finished cells left over.
     spare: u32,
-    cut_short: bool,
 }
 
 impl<'w, 'p, P: Primitives + ?Sized> Builder<'w, 'p, P> {
@@ -133,12 +131,12 @@ impl<'w, 'p, P: Primitives + ?Sized> Builder<'w, 'p, P> {
             references: 0,
             depth: 0,
             spare: 0,
-            cut_short: false,
         })
     }
 
-    fn run(mut self) -> Result<Built, BuildError> {
-        let mut task = self.root()?;
+    /// Builds the whole within so many bytes; how many words it took.
+    fn run(mut self, bytes: usize) -> Result<usize, BuildError> {
+        let mut task = self.root(bytes)?;
         loop {
             task.budget = task.budget.saturating_add(core::mem::take(&mut self.spare));
             self.link(&task);
@@ -160,12 +158,11 @@ impl<'w, 'p, P: Primitives + ?Sized> Builder<'w, 'p, P> {
             depth: self.depth,
             bounds: self.bounds,
         };
-        let words = pack(&mut self.stage, tree, self.lattice.as_ref())?;
-        Ok(Built { words, cut_short: self.cut_short })
+        Ok(pack(&mut self.stage, tree, self.lattice.as_ref())?)
     }
 
     /// The cell of all primitives.
-    fn root(&mut self) -> Result<Task, Full> {
+    fn root(&mut self, bytes: usize) -> Result<Task, Full> {
         let count = self.primitives.len();
         self.stage.top = count as usize;
         self.stage.reserve(0)?;
@@ -176,8 +173,7 @@ impl<'w, 'p, P: Primitives + ?Sized> Builder<'w, 'p, P> {
             let primitive = primitive as u32;
             *item = Item { bounds: primitives.bounds(primitive), primitive };
         }
-        let header = HEADER_WORDS * 4;
-        let bytes = self.options.bytes(count as usize, self.form).saturating_sub(header);
+        let bytes = bytes.saturating_sub(HEADER_WORDS * 4);
         // Whole words only: an odd number of narrow references is padded.
         let budget = u32::try_from(bytes / 4 * 2).unwrap_or(u32::MAX);
         self.most = budget;
@@ -253,10 +249,7 @@ impl<'w, 'p, P: Primitives + ?Sized> Builder<'w, 'p, P> {
         let node_size = self.form.inner_size(task.budget);
         let least = self.leaf_size(most_left).saturating_add(self.leaf_size(most_right)).saturating_add(node_size);
         let crowded = task.top as usize + both > most_items(self.primitives.len() as usize);
-        let Some(excess) = task.budget.checked_sub(least).filter(|_| !crowded) else {
-            self.cut_short = true;
-            return Ok(None);
-        };
+        let Some(excess) = task.budget.checked_sub(least).filter(|_| !crowded) else { return Ok(None) };
 
         // The copies of those on both sides lie on top of the cell's items.
         self.stage.top = task.top as usize + both;

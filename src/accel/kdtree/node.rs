@@ -88,7 +88,9 @@ impl Node {
     /// A shift by the link itself: shorter than to find the axis and look at its direction.
     #[inline(always)]
     pub(crate) const fn is_descended(self, mask: u32) -> bool {
-        mask >> (self.link & 31) & 1 != 0
+        // Arm turns by a register's lowest five bits, x86 tests the bit that they number.
+        let mask = if cfg!(target_arch = "arm") { mask.rotate_right(self.link) } else { mask >> (self.link & 31) };
+        mask & 1 != 0
     }
 
     /// The number of an inner node's right child, or of a leaf's primitives.

@@ -91,6 +91,17 @@ impl Options {
         self.max_depth.unwrap_or_else(rule).min(MAX_DEPTH as u32)
     }
 
+    /// Whether the cost of a byte is looked for at which the tree fits.
+    pub(super) const fn is_searched(&self) -> bool {
+        self.max_bytes.is_some() && matches!(self.split, Split::Sah)
+    }
+
+    /// The bytes that a tree over `primitives` may take while it is built: twice as many where it has to be made to fit.
+    pub(super) const fn room(&self, primitives: usize, form: Form) -> usize {
+        let bytes = self.bytes(primitives, form);
+        if self.is_searched() { bytes.saturating_mul(2) } else { bytes }
+    }
+
     /// The greatest size in bytes for `primitives`.
     pub(super) const fn bytes(&self, primitives: usize, form: Form) -> usize {
         // A constant beside the rate, so that a handful of primitives can still be divided.

@@ -4,7 +4,7 @@ use super::options::{Options, Split};
 use crate::{
     accel::sort::{coordinate, key, sort},
     geometry::{Aabb, Axis, Lattice},
-    math::greatest,
+    math::{greatest, sqrt},
 };
 
 /// A reference to a primitive, with the bounds of the part of it that lies in the cell.
@@ -171,15 +171,20 @@ fn median(items: &[Item], cell: &Aabb) -> Option<Plane> {
 /// Words per item to sort in: where it begins, where it ends, and room to sort either.
 pub(super) const SCRATCH_WORDS: usize = 3;
 
-/// What it costs to have a primitive on both sides of a plane, in tests of it.
+/// What it costs to have a primitive of a cell on both sides of a plane, in tests of it.
 ///
-/// Without it, triangles through one point are divided for little gain: 1.5 times the build, 1.7 times the bytes.
-const COPY: f32 = 0.15;
+/// Where it is nothing, triangles through one point are divided for little gain: 1.5 times the build, 1.7 times the bytes.
+/// Where it does not rise with the number of items, their references rise with its root: so many on both sides of whatever
+/// plane will be so again, level by level. A surface has about the root of its triangles there, and hardly notices.
+fn copy_cost(items: usize) -> f32 {
+    0.15 + 0.002 * sqrt(items as f32)
+}
 
 /// A way to divide that costs less than all before it.
 struct Best<'o> {
     rules: &'o Rules<'o>,
     items: usize,
+    copy_cost: f32,
     cost: f32,
     plane: Option<Plane>,
 }
@@ -241,7 +246,7 @@ impl Best<'_> {
             work *= 1.0 - self.rules.options.empty_bonus;
         }
         let half_words = self.rules.leaf_size(left) + self.rules.leaf_size(right) + self.rules.sizes[0] as f32;
-        work += COPY * (left + right).saturating_sub(self.items) as f32;
+        work += self.copy_cost * (left + right).saturating_sub(self.items) as f32;
         let cost = 1.0 + self.rules.options.intersection_cost * work + self.rules.price * half_words;
         if cost < self.cost {
             self.cost = cost;
@@ -253,7 +258,8 @@ impl Best<'_> {
 /// All planes through the items' bounds are tried: the cost is linear between them.
 fn surface_area(items: &[Item], cell: &Aabb, rules: &Rules<'_>, scratch: &mut [u32]) -> Option<Plane> {
     let cost = rules.options.intersection_cost * items.len() as f32 + rules.price * rules.leaf_size(items.len());
-    let mut best = Best { rules, items: items.len(), cost, plane: None };
+    let copy_cost = copy_cost(items.len());
+    let mut best = Best { rules, items: items.len(), copy_cost, cost, plane: None };
     for axis in Axis::ALL {
         let chances = Chances::new(cell, axis);
         // A flat cell has no chances to compare.

@@ -24,12 +24,12 @@ pub struct KdTraversal<'a> {
 impl<'a> KdTraversal<'a> {
     #[inline]
     pub(super) fn new(tree: &KdTree<'a>, ray: &PreparedRay) -> Self {
-        let next = Segment::whole(&tree.bounds, ray);
+        let slack = slack(ray.ray().t_min);
         Self {
             nodes: tree.nodes,
             references: tree.references,
-            slack: next.map_or(0.0, |whole| slack(whole.enter)),
-            next,
+            slack,
+            next: Segment::whole(&tree.bounds, ray, slack),
             waiting: Waiting::new(),
         }
     }
@@ -55,7 +55,7 @@ impl<'a> KdTraversal<'a> {
                         Some(next) => cell = next,
                         None => return Step::Done,
                     },
-                    1 => return Step::Leaf(Leaf::of(References::wide(node.payload()), 0, 1)),
+                    1 => return Step::Leaf(Leaf::of(References::IDENTITY, node.first(), 1)),
                     count => return Step::Leaf(Leaf::of(self.references, node.first(), count)),
                 }
                 continue;
@@ -66,28 +66,30 @@ impl<'a> KdTraversal<'a> {
             let (left, right) = (cell.node + 1, node.number());
             let (near, far) = if descended { (right, left) } else { (left, right) };
             let distance = node.position() - view.origin;
-            let entry = distance * view.entry;
-            let exit = distance * view.exit + slack;
-            // Written so that NaN, the ray in the plane, visits both.
+            // Parameters are computed where they are needed. Written so that NaN, the ray in the plane, visits both.
             if node.is_cut() {
                 // One child: the cell shrinks to it, or the ray passes it by.
-                let passed = if node.is_empty_on_the_right() != descended {
-                    cell.exit = least(exit, cell.exit);
-                    exit < cell.enter
-                } else {
-                    cell.enter = greatest(entry, cell.enter);
-                    entry > cell.exit
-                };
                 cell.node = left;
-                if passed {
+                if node.is_empty_on_the_right() != descended {
+                    cell.exit = least(distance * view.exit + slack, cell.exit);
+                } else {
+                    cell.enter = greatest(distance * view.entry, cell.enter);
+                }
+                if cell.enter > cell.exit {
                     match self.waiting.pop(end) {
                         Some(next) => cell = next,
                         None => return Step::Done,
                     }
                 }
-            } else if entry > cell.exit {
+                continue;
+            }
+            let entry = distance * view.entry;
+            if entry > cell.exit {
                 cell.node = near;
-            } else if exit < cell.enter {
+                continue;
+            }
+            let exit = distance * view.exit + slack;
+            if exit < cell.enter {
                 cell.node = far;
             } else {
                 let enter = greatest(entry, cell.enter);

@@ -43,27 +43,27 @@ impl Options {
     /// The fewest bytes that still make a tree worth its name: 10 to 20 per triangle.
     #[must_use]
     pub const fn small() -> Self {
-        Self { intersection_cost: 0.25, bytes_per_primitive: 48, ..Self::balanced() }
+        Self { intersection_cost: 0.4, bytes_per_primitive: 48, ..Self::balanced() }
     }
 
-    /// A tenth slower than [`fast`](Self::fast) in half the bytes: 20 to 40 per triangle.
+    /// A tenth slower than [`fast`](Self::fast) in half the bytes: 20 to 35 per triangle.
     #[must_use]
     pub const fn balanced() -> Self {
         Self {
             split: Split::Sah,
             leaf_size: 1,
             max_depth: MAX_DEPTH as u32,
-            intersection_cost: 0.4,
+            intersection_cost: 0.7,
             clip: true,
             bytes_per_primitive: 96,
             max_bytes: None,
         }
     }
 
-    /// The least time per ray: 40 to 100 bytes per triangle.
+    /// The least time per ray: 35 to 80 bytes per triangle.
     #[must_use]
     pub const fn fast() -> Self {
-        Self { intersection_cost: 0.8, bytes_per_primitive: 200, ..Self::balanced() }
+        Self { intersection_cost: 1.8, bytes_per_primitive: 200, ..Self::balanced() }
     }
 
     /// The same, but at most `bytes` in all.

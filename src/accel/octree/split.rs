@@ -9,7 +9,7 @@ use super::{
 use crate::{
     accel::sort::{coordinate, key, sort},
     geometry::{Aabb, Axis},
-    math::greatest,
+    math::{greatest, sqrt},
 };
 
 /// How `cell` is best divided, or none if a leaf is expected to be cheaper.
@@ -76,6 +76,15 @@ impl Sizes {
 /// What it costs to enter a child, in visits to a node.
 const CHILD: f32 = 0.3;
 
+/// What it costs to have a part more of one of the items of a cell, in tests of it.
+///
+/// With it and dearer tests, a mesh takes a tenth fewer bytes or tests than without. Where it does not rise with the number of items, the references
+/// to triangles through one point rise with its root: so many on both sides of whatever plane will be so again, level by
+/// level. A surface has about the root of its triangles there, and hardly notices.
+fn copy_cost(items: usize) -> f32 {
+    0.25 + 0.001 * sqrt(items as f32)
+}
+
 /// How many items have part in each octant, whichever axes are divided.
 ///
 /// Indexed by a digit of two bits an axis: 1 before the plane, 2 behind it, 3 wherever.
@@ -116,6 +125,7 @@ impl Counts {
 /// Of a division, the axes along which it is expected to pay; none if a leaf is cheaper.
 fn subset(items: &[Item], cell: &Aabb, options: &Options, division: &Division) -> Option<Division> {
     let counts = Counts::new(items, division);
+    let copy_cost = copy_cost(items.len());
     let mut best = None;
     let mut least = options.intersection_cost * items.len() as f32;
     for axes in 1..8_u32 {
@@ -132,13 +142,15 @@ fn subset(items: &[Item], cell: &Aabb, options: &Options, division: &Division) -
             continue;
         }
         let sizes = Sizes::new(cell, &part.point);
-        let mut cost = 1.0;
+        let (mut cost, mut parts) = (1.0, 0);
         for octant in (0..8_u32).filter(|octant| octant & !axes == 0) {
             let inside = counts.inside(octant, axes);
+            parts += inside as usize;
             if inside > 0 {
                 cost += sizes.chance(octant) * (CHILD + options.intersection_cost * inside as f32);
             }
         }
+        cost += options.intersection_cost * copy_cost * parts.saturating_sub(items.len()) as f32;
         if cost < least {
             least = cost;
             best = Some(part);
@@ -149,6 +161,8 @@ fn subset(items: &[Item], cell: &Aabb, options: &Options, division: &Division) -
 
 /// A plane across an axis that costs less than all before it.
 struct Best {
+    items: usize,
+    copy_cost: f32,
     min: f32,
     max: f32,
     /// The chance of a part without length, and what a length adds.
@@ -160,13 +174,15 @@ struct Best {
 }
 
 impl Best {
-    fn new(cell: &Aabb, axis: Axis) -> Self {
+    fn new(items: usize, cell: &Aabb, axis: Axis) -> Self {
         let size = cell.size();
         let size = size / greatest(size.max_element(), f32::MIN_POSITIVE);
         let (length, a, b) = (axis.of(size), axis.next().of(size), axis.next().next().of(size));
         let rim = a + b + 1.0e-6;
         let whole = a * b + length * rim;
         Self {
+            items,
+            copy_cost: copy_cost(items),
             min: axis.of(cell.min),
             max: axis.of(cell.max),
             flat: a * b / whole,
@@ -185,7 +201,8 @@ impl Best {
         }
         let nearer = self.flat + (plane - self.min) * self.scale;
         let farther = 1.0 + self.flat - nearer;
-        let work = nearer * before as f32 + farther * behind as f32;
+        let copies = (before + behind).saturating_sub(self.items) as f32;
+        let work = nearer * before as f32 + farther * behind as f32 + self.copy_cost * copies;
         if work < self.work {
             (self.work, self.plane, self.flat_before) = (work, plane, flat_before);
         }
@@ -196,7 +213,7 @@ impl Best {
 fn sweep_all(items: &[Item], cell: &Aabb, scratch: &mut [u32]) -> Option<Division> {
     let mut division = Division::NONE;
     for axis in Axis::ALL {
-        let mut best = Best::new(cell, axis);
+        let mut best = Best::new(items.len(), cell, axis);
         // A flat cell has no chances to compare.
         if best.scale > 0.0 {
             sweep(items, axis, &mut best, scratch)?;

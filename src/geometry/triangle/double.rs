@@ -76,24 +76,36 @@ fn determinant(x: &[Double; 3], y: &[Double; 3], z: &[Double; 3]) -> (Double, f3
     (total, scale * (1.0 / 2_199_023_255_552.0))
 }
 
+// In steps that each give their stack back before the next: the exact ones need it.
 pub(super) fn test(triangle: &Triangle, ray: &PreparedRay, front: Option<bool>) -> Option<Crossing> {
-    let origin = ray.ray().origin;
-    let d = ray.ray().direction.to_array().map(|x| Double { high: x, low: 0.0 });
-    let a = between(origin, triangle.a);
     let front = match front {
         Some(front) => front,
-        None => facing(triangle, ray, &d, &a)?,
+        None => facing(triangle, ray)?,
     };
-    let t = quotient(triangle, &d, &a).unwrap_or_else(|| exact::parameter(triangle, ray));
+    let t = quotient(triangle, ray).unwrap_or_else(|| exact::parameter(triangle, ray));
     t.is_finite().then_some(Crossing { t, front })
 }
 
 /// From which side the ray hits, if it does.
-fn facing(triangle: &Triangle, ray: &PreparedRay, d: &[Double; 3], a: &[Double; 3]) -> Option<bool> {
-    let origin = ray.ray().origin;
-    let (b, c) = (between(origin, triangle.b), between(origin, triangle.c));
-    let proven = [(&b, &c), (&c, a), (a, &b)].map(|(p, q)| {
-        let (value, error) = determinant(d, p, q);
+fn facing(triangle: &Triangle, ray: &PreparedRay) -> Option<bool> {
+    let proven = signs(triangle, ray);
+    if proven.contains(&Some(Sign::Positive)) && proven.contains(&Some(Sign::Negative)) {
+        return None;
+    }
+    agreement(exact::signs(triangle, ray, proven)).map(|sign| sign == Sign::Negative)
+}
+
+fn direction(ray: &PreparedRay) -> [Double; 3] {
+    ray.ray().direction.to_array().map(|x| Double { high: x, low: 0.0 })
+}
+
+/// The signs of the edge functions that 48 bits decide.
+#[inline(never)]
+fn signs(triangle: &Triangle, ray: &PreparedRay) -> [Option<Sign>; 3] {
+    let (origin, d) = (ray.ray().origin, direction(ray));
+    let [a, b, c] = [triangle.a, triangle.b, triangle.c].map(|corner| between(origin, corner));
+    [(&b, &c), (&c, &a), (&a, &b)].map(|(p, q)| {
+        let (value, error) = determinant(&d, p, q);
         let error = error + 1.0e-34;
         if !(error < 1.0e30) {
             None
@@ -104,18 +116,16 @@ fn facing(triangle: &Triangle, ray: &PreparedRay, d: &[Double; 3], a: &[Double; 
         } else {
             None
         }
-    });
-    if proven.contains(&Some(Sign::Positive)) && proven.contains(&Some(Sign::Negative)) {
-        return None;
-    }
-    agreement(exact::signs(triangle, ray, proven)).map(|sign| sign == Sign::Negative)
+    })
 }
 
 /// The correctly rounded parameter `a . N / d . N`, if 48 bits decide it.
-fn quotient(triangle: &Triangle, d: &[Double; 3], a: &[Double; 3]) -> Option<f32> {
+#[inline(never)]
+fn quotient(triangle: &Triangle, ray: &PreparedRay) -> Option<f32> {
+    let (a, d) = (between(ray.ray().origin, triangle.a), direction(ray));
     let (e1, e2) = (between(triangle.a, triangle.b), between(triangle.a, triangle.c));
-    let (n, n_error) = determinant(a, &e1, &e2);
-    let (m, m_error) = determinant(d, &e1, &e2);
+    let (n, n_error) = determinant(&a, &e1, &e2);
+    let (m, m_error) = determinant(&d, &e1, &e2);
     let (numerator, denominator) = (n.high.abs(), m.high.abs());
     let t = n.high / m.high;
     let rest = difference(n, product(Double { high: t, low: 0.0 }, m));

@@ -81,27 +81,42 @@ impl Accumulator {
         }
     }
 
-    /// The magnitude's 64 highest bits, cut off, and the weight of the lowest of them; `None` of zero.
-    fn leading(&self) -> Option<(u64, i32)> {
-        let mut magnitude = self.0;
-        if self.sign() == Sign::Negative {
+    /// What a quotient of two sums needs of one; `None` of zero.
+    fn leading(mut self) -> Option<Leading> {
+        let negative = self.sign() == Sign::Negative;
+        if negative {
             let mut carry = 1_u64;
-            for word in &mut magnitude {
+            for word in &mut self.0 {
                 carry += u64::from(!*word);
                 *word = carry as u32;
                 carry >>= 32;
             }
         }
-        let top = magnitude.iter().rposition(|&word| word != 0)?;
-        let word = |below: usize| top.checked_sub(below).and_then(|i| magnitude.get(i)).copied().unwrap_or(0);
+        let top = self.0.iter().rposition(|&word| word != 0)?;
+        let word = |below: usize| top.checked_sub(below).and_then(|i| self.0.get(i)).copied().unwrap_or(0);
         let (high, middle, low) = (word(0), word(1), word(2));
         let zeros = high.leading_zeros();
         let mut bits = u64::from(high) << 32 | u64::from(middle);
         if zeros > 0 {
             bits = bits << zeros | u64::from(low >> (32 - zeros));
         }
-        Some((bits, (top as i32 - 1) * 32 - zeros as i32 - LOWEST))
+        Some(Leading { negative, bits, weight: (top as i32 - 1) * 32 - zeros as i32 - LOWEST })
     }
+}
+
+/// A number's sign, its magnitude's 64 highest bits, cut off, and the weight of the lowest of them.
+struct Leading {
+    negative: bool,
+    bits: u64,
+    weight: i32,
+}
+
+/// The leading bits of what `add` adds up. Out of line, so that one accumulator at a time is on the stack.
+#[inline(never)]
+fn leading(add: impl FnOnce(&mut Accumulator)) -> Option<Leading> {
+    let mut sum = Accumulator::ZERO;
+    add(&mut sum);
+    sum.leading()
 }
 
 /// The sign of `d . ((p - o) x (q - o))`.
@@ -125,36 +140,38 @@ pub(super) fn signs(triangle: &Triangle, ray: &PreparedRay, proven: [Option<Sign
 /// The parameter of the plane, rounded to nearest even; infinite where it exceeds `f32`.
 #[inline(never)]
 pub(super) fn parameter(triangle: &Triangle, ray: &PreparedRay) -> f32 {
-    let (o, d) = (ray.ray().origin, ray.ray().direction);
-    let Triangle { a, b, c } = *triangle;
-    let mut volume = Accumulator::ZERO;
-    volume.add_determinant(a, b, c);
-    volume.add_determinant(-o, b, c);
-    volume.add_determinant(a, -o, c);
-    volume.add_determinant(a, b, -o);
-    let mut area = Accumulator::ZERO;
-    area.add_determinant(d, a, b);
-    area.add_determinant(d, b, c);
-    area.add_determinant(d, c, a);
-    let Some((numerator, n_weight)) = volume.leading() else { return 0.0 };
-    let Some((denominator, d_weight)) = area.leading() else { return f32::INFINITY };
+    let volume = leading(|sum| {
+        let (&Triangle { a, b, c }, o) = (triangle, -ray.ray().origin);
+        sum.add_determinant(a, b, c);
+        sum.add_determinant(o, b, c);
+        sum.add_determinant(a, o, c);
+        sum.add_determinant(a, b, o);
+    });
+    let Some(volume) = volume else { return 0.0 };
+    let area = leading(|sum| {
+        let (&Triangle { a, b, c }, d) = (triangle, ray.ray().direction);
+        sum.add_determinant(d, a, b);
+        sum.add_determinant(d, b, c);
+        sum.add_determinant(d, c, a);
+    });
+    let Some(area) = area else { return f32::INFINITY };
 
     // Long division: 33 bits of quotient are more than a float and its guard; the rest is sticky.
-    let (mut quotient, mut rest) = (0_u64, numerator);
-    if rest >= denominator {
-        (quotient, rest) = (1, rest - denominator);
+    let (mut quotient, mut rest) = (0_u64, volume.bits);
+    if rest >= area.bits {
+        (quotient, rest) = (1, rest - area.bits);
     }
     for _ in 0..32 {
         let carry = rest >> 63 != 0;
         rest <<= 1;
         quotient <<= 1;
-        if carry || rest >= denominator {
-            rest = rest.wrapping_sub(denominator);
+        if carry || rest >= area.bits {
+            rest = rest.wrapping_sub(area.bits);
             quotient |= 1;
         }
     }
     let sticky = u64::from(rest != 0);
-    round(volume.sign() != area.sign(), quotient << 1 | sticky, n_weight - d_weight - 33)
+    round(volume.negative != area.negative, quotient << 1 | sticky, volume.weight - area.weight - 33)
 }
 
 /// `± m * 2^e` rounded to nearest even, `m` not 0 and its lowest bit sticky.
@@ -205,7 +222,7 @@ mod tests {
     #[test]
     fn leading_bits_have_their_weight() {
         for [x, y, z] in [[3.0, 5.0, 7.0], [-1.5, 1.0e20, 1.0e-30], [1.0e-40, 2.0, 3.0_f32]] {
-            let (bits, weight) = sum(&[[x, y, z]]).leading().unwrap();
+            let Leading { bits, weight, .. } = sum(&[[x, y, z]]).leading().unwrap();
             let exact = (f64::from(x) * f64::from(y) * f64::from(z)).abs();
             let got = bits as f64 * 2.0_f64.powi(weight);
             assert!((got / exact - 1.0).abs() < 1.0e-15, "{got} {exact}");

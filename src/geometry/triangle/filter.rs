@@ -1,7 +1,13 @@
 //! The first tier: the shear test in `f32` with a proven bound on its error.
 
 use super::Crossing;
-use crate::geometry::{Axis, Lattice, PreparedRay, ray::Shear};
+use crate::{
+    geometry::{
+        Axis, Lattice, PreparedRay, beyond,
+        ray::{LIFT, Shear},
+    },
+    math::greatest,
+};
 
 /// Half an ulp of 1.
 const U: f32 = 1.0 / 16_777_216.0;
@@ -15,19 +21,27 @@ const TOLERANCE: f32 = 1.0 / 131_072.0;
 /// 2^-100: smaller magnitudes are left to the tiers with a wider range.
 const SMALL: f32 = 7.888_609e-31;
 
-/// What `f32` can prove.
+/// What `f32` can prove of the edge functions' signs.
 pub(super) enum Verdict {
     /// The ray misses.
     Miss,
-    /// The ray hits here.
-    Hit(Crossing),
-    /// The ray hits within `error` of this parameter.
-    Near { crossing: Crossing, error: f32 },
+    /// The ray hits.
+    Hit(Certain),
     /// Nothing.
     Unproven,
 }
 
-/// A corner where it lies: asked by axis, which in memory costs one load and in registers a detour.
+/// A hit, and what was found out on the way.
+pub(super) struct Certain {
+    /// The edge functions.
+    edges: [f32; 3],
+    /// The depths of the corners: how far away they are along the major axis.
+    depths: [f32; 3],
+    /// The sum of the sheared coordinates' magnitudes.
+    spread: f32,
+}
+
+/// A corner where it lies, asked by axis.
 pub(crate) trait Corner: Copy {
     /// The coordinate along an axis.
     fn along(self, axis: Axis) -> f32;
@@ -55,15 +69,25 @@ pub(super) struct Sheared {
     z: [f32; 3],
 }
 
+/// [`Sheared`] with the axes in this order.
 #[inline(always)]
-pub(super) fn shear(corners: [impl Corner; 3], ray: &PreparedRay) -> Sheared {
-    let Shear { axes: [kx, ky, kz], origin: [ox, oy, oz], slope: [sx, sy], .. } = ray.shear;
-    // Corner by corner, without an index: at opt-level "s" it would be checked.
+fn in_order([x, y, z]: [Axis; 3], corners: [impl Corner; 3], shear: &Shear) -> Sheared {
+    let ([ox, oy, oz], [sx, sy]) = (shear.origin, shear.slope);
     let [a, b, c] = corners.map(|v| {
-        let z = v.along(kz) - oz;
-        [(v.along(kx) - ox) - sx * z, (v.along(ky) - oy) - sy * z, z]
+        let z = v.along(z) - oz;
+        [(v.along(x) - ox) - sx * z, (v.along(y) - oy) - sy * z, z]
     });
     Sheared { x: [a[0], b[0], c[0]], y: [a[1], b[1], c[1]], z: [a[2], b[2], c[2]] }
+}
+
+/// A way for each major axis: all tests of a ray take the same one, and no address has to be computed.
+#[inline(always)]
+pub(super) fn shear(corners: [impl Corner; 3], ray: &PreparedRay) -> Sheared {
+    match ray.shear.major {
+        Axis::X => in_order([Axis::Y, Axis::Z, Axis::X], corners, &ray.shear),
+        Axis::Y => in_order([Axis::Z, Axis::X, Axis::Y], corners, &ray.shear),
+        Axis::Z => in_order([Axis::X, Axis::Y, Axis::Z], corners, &ray.shear),
+    }
 }
 
 /// Twice the areas that the ray spans with the edges opposite `a`, `b` and `c`.
@@ -75,49 +99,60 @@ pub(super) fn edges(s: &Sheared) -> [f32; 3] {
     [cx * by - cy * bx, ax * cy - ay * cx, bx * ay - by * ax]
 }
 
+/// Whether the ray hits, as far as `f32` can prove it.
 #[inline(always)]
 pub(super) fn test(corners: [impl Corner; 3], ray: &PreparedRay) -> Verdict {
     let s = shear(corners, ray);
     let [u, v, w] = edges(&s);
     let ([ax, bx, cx], [ay, by, cy], [az, bz, cz]) = (s.x, s.y, s.z);
     let spread = ((ax.abs() + ay.abs()) + (bx.abs() + by.abs())) + (cx.abs() + cy.abs());
-    let (za, zb, zc) = (az.abs(), bz.abs(), cz.abs());
-    let depth = if za > zb { za } else { zb };
-    let depth = if zc > depth { zc } else { depth };
+    let depth = (az.abs() + bz.abs()) + cz.abs();
 
-    // Signs are proven outside ±bound; comparisons are written so that NaN and infinity prove nothing.
-    let bound = (depth * (8.0 * U) + spread * (4.0 * U)) * spread + UNDERFLOW;
-    if (u > bound) | (v > bound) | (w > bound) {
+    // Signs are proven outside ±bound; comparisons are written so that NaN and infinity prove nothing. If a product of
+    // coordinates has overflowed, so has the bound.
+    let bound = (ray.shear.error * depth + spread * (2.0 * U / LIFT)) * (spread * LIFT) + UNDERFLOW;
+    let hit = if (u > bound) | (v > bound) | (w > bound) {
         if (u < -bound) | (v < -bound) | (w < -bound) {
-            return if bound < f32::INFINITY { Verdict::Miss } else { Verdict::Unproven };
+            return Verdict::Miss;
         }
-        if !((u > bound) & (v > bound) & (w > bound)) {
-            return Verdict::Unproven;
+        (u > bound) & (v > bound) & (w > bound)
+    } else {
+        (u < -bound) & (v < -bound) & (w < -bound)
+    };
+    if hit { Verdict::Hit(Certain { edges: [u, v, w], depths: s.z, spread }) } else { Verdict::Unproven }
+}
+
+impl Certain {
+    /// The crossing; none if it is proven to lie outside the limits, NaN for a parameter that `f32` cannot prove.
+    ///
+    /// Out of line: most triangles are missed, and the loop that tests them needs all registers.
+    #[inline(never)]
+    pub(super) fn place(&self, ray: &PreparedRay, (t_min, t_max): (f32, f32)) -> Option<Crossing> {
+        let &Self { edges: [u, v, w], depths: [az, bz, cz], spread } = self;
+        // The determinant has the sign of -(d . N) * d_major.
+        let determinant = (u + v) + w;
+        let inverse = ray.shear.inverse;
+        let front = (determinant > 0.0) == (inverse > 0.0);
+        let (e1, e2) = (bz - az, cz - az);
+        let q = az + (v * e1 + w * e2) / determinant;
+        let t = q * inverse;
+
+        let depth = greatest(greatest(az.abs(), bz.abs()), cz.abs());
+        let extent = e1.abs() + e2.abs();
+        let area = determinant.abs();
+        // The errors of an edge function and of q, which is at most 8 U error / area.
+        let edge = (depth * (8.0 * U) + spread * (4.0 * U)) * spread + UNDERFLOW;
+        let error = extent * spread * (depth + spread) + (depth + extent) * area;
+        let unproven = Crossing { t: f32::NAN, front };
+        if !(edge * 16.0 < area && area < 1.0e30) {
+            return Some(unproven);
         }
-    } else if !((u < -bound) & (v < -bound) & (w < -bound)) {
-        return Verdict::Unproven;
-    }
-
-    // The determinant has the sign of -(d . N) * d_major.
-    let determinant = (u + v) + w;
-    let inverse = ray.shear.inverse;
-    let front = (determinant > 0.0) == (inverse > 0.0);
-    let (e1, e2) = (bz - az, cz - az);
-    let q = az + (v * e1 + w * e2) / determinant;
-    let t = q * inverse;
-
-    let extent = e1.abs() + e2.abs();
-    let area = determinant.abs();
-    let error = extent * spread * (depth + spread) + (depth + extent) * area; // |q - exact| <= 8 U error / area
-    let crossing = Crossing { t, front };
-    if bound * 16.0 < area && area < 1.0e30 {
         let limit = TOLERANCE * q.abs() * area;
         if error * (8.0 * U) < limit && limit > SMALL && q.abs() > SMALL && t.abs() > 1.0e-30 && t.abs() < 1.0e37 {
-            return Verdict::Hit(crossing);
+            return Some(Crossing { t, front });
         }
+        // Proven to lie outside: the slack belongs before any rounding that made `t` (rule R7).
         let error = ((error * (8.0 * U) + 1.0e-36) / area + q.abs() * (8.0 * U) + 1.0e-36) * inverse.abs() + 1.0e-36;
-        Verdict::Near { crossing, error }
-    } else {
-        Verdict::Near { crossing, error: f32::INFINITY }
+        if t + error < t_min || t - error > beyond(t_max) { None } else { Some(unproven) }
     }
 }

@@ -14,7 +14,7 @@ use glam::Vec3;
 
 use self::filter::{Corner, Verdict};
 use super::{Aabb, Axis, PreparedRay, moved, ray::beyond};
-use crate::math;
+use crate::math::{self, greatest, least};
 
 /// A triangle given by its corners; counter-clockwise seen from its front.
 ///
@@ -64,25 +64,46 @@ fn agreement(signs: [Sign; 3]) -> Option<Sign> {
     }
 }
 
-/// [`Triangle::intersect`] for corners where they lie.
+/// [`Triangle::intersect`] for corners where they lie; the limits are asked for by a ray that does not clearly miss.
 #[inline(always)]
-pub(crate) fn intersect(corners: [impl Corner; 3], ray: &PreparedRay, t_min: f32, t_max: f32) -> Option<Crossing> {
-    let certify = |front| {
-        let [a, b, c] = corners.map(|v| Vec3::new(v.along(Axis::X), v.along(Axis::Y), v.along(Axis::Z)));
-        Triangle { a, b, c }.certify(ray, t_min, t_max, front)
-    };
-    match filter::test(corners, ray) {
+pub(crate) fn intersect<C: Corner>(
+    [a, b, c]: [C; 3],
+    ray: &PreparedRay,
+    limits: impl Fn() -> (f32, f32),
+) -> Option<Crossing> {
+    match filter::test([a, b, c], ray) {
         Verdict::Miss => None,
-        Verdict::Hit(crossing) => Some(crossing),
-        Verdict::Near { crossing, error } => {
-            // Proven to lie outside: the slack belongs before any rounding that made `t` (rule R7).
-            if crossing.t + error < t_min || crossing.t - error > beyond(t_max) {
-                return None;
-            }
-            certify(Some(crossing.front))
-        }
-        Verdict::Unproven => certify(None),
+        Verdict::Hit(certain) => match certain.place(ray, limits()) {
+            Some(crossing) if crossing.t.is_nan() => certify(a, b, c, ray, limits(), Some(crossing.front)),
+            proven => proven,
+        },
+        Verdict::Unproven => certify(a, b, c, ray, limits(), None),
     }
+}
+
+/// The slow tiers; `front` is known if the filter has proven the hit.
+///
+/// Corners one by one, because an array would be filled for those that are missed, too.
+#[cold]
+#[inline(never)]
+fn certify<C: Corner>(
+    a: C,
+    b: C,
+    c: C,
+    ray: &PreparedRay,
+    limits: (f32, f32),
+    front: Option<bool>,
+) -> Option<Crossing> {
+    let [a, b, c] = [a, b, c].map(|v| Vec3::new(v.along(Axis::X), v.along(Axis::Y), v.along(Axis::Z)));
+    Triangle { a, b, c }.certify(ray, limits, front)
+}
+
+/// Whether a crossing cannot lie within the limits: it lies between the corners' parameters along the major axis.
+#[inline(never)]
+fn is_outside(triangle: &Triangle, ray: &PreparedRay, (t_min, t_max): (f32, f32)) -> bool {
+    let major = ray.shear.major;
+    let [a, b, c] = [triangle.a, triangle.b, triangle.c].map(|v| ray.entry(major, major.of(v)));
+    least(least(a, b), c) > beyond(t_max) || beyond(greatest(greatest(a, b), c)) < t_min
 }
 
 impl Triangle {
@@ -102,19 +123,13 @@ impl Triangle {
     #[inline(always)]
     #[must_use]
     pub fn intersect(&self, ray: &PreparedRay, t_min: f32, t_max: f32) -> Option<Crossing> {
-        intersect([self.a.as_ref(), self.b.as_ref(), self.c.as_ref()], ray, t_min, t_max)
+        intersect([self.a.as_ref(), self.b.as_ref(), self.c.as_ref()], ray, || (t_min, t_max))
     }
 
-    /// The slow tiers; `front` is known if the filter has proven the hit.
-    #[cold]
+    /// The slow tiers for all kinds of corners.
     #[inline(never)]
-    fn certify(&self, ray: &PreparedRay, t_min: f32, t_max: f32, front: Option<bool>) -> Option<Crossing> {
-        // A crossing lies between the corners' parameters along the major axis.
-        let [.., major] = ray.shear.axes;
-        let planes = [self.a, self.b, self.c].map(|v| ray.entry(major, major.of(v)));
-        let nearest = planes.iter().fold(f32::INFINITY, |x, &t| if t < x { t } else { x });
-        let farthest = planes.iter().fold(f32::NEG_INFINITY, |x, &t| if t > x { t } else { x });
-        if nearest > beyond(t_max) || beyond(farthest) < t_min {
+    fn certify(&self, ray: &PreparedRay, limits: (f32, f32), front: Option<bool>) -> Option<Crossing> {
+        if is_outside(self, ray, limits) {
             return None;
         }
         // Doubles are in hardware on hosts; on chips pairs of floats are several times faster than soft doubles.

@@ -12,7 +12,7 @@ use firmware::{
     camera, entry, finish, stack_of,
 };
 use hitscan::{
-    Bvh, CompactKdTree, DualSplit, Grid, KdTree, Mesh, Octree, Ray, Scene,
+    Bvh, CompactKdTree, DualSplit, Grid, KdTree, Mesh, Octree, Scene,
     accel::{self, Accelerator},
     asset::Stored,
     primitives,
@@ -49,6 +49,9 @@ impl Fit {
     }
 }
 
+/// What adds the rays at a contestant.
+type Measure = fn(&Counter, &Contestant, &mut Fit);
+
 /// Adds the rays at a contestant.
 #[inline(never)]
 fn measure<A: Accelerator + Stored<'static>>(counter: &Counter, contestant: &Contestant, fit: &mut Fit) {
@@ -75,7 +78,7 @@ fn measure<A: Accelerator + Stored<'static>>(counter: &Counter, contestant: &Con
 #[entry]
 fn main() -> ! {
     let counter = Counter::new();
-    let measures: [(&str, fn(&Counter, &Contestant, &mut Fit)); 6] = [
+    let measures: [(&str, Measure); 6] = [
         ("grid", measure::<Grid>),
         ("octree", measure::<Octree>),
         ("kdtree", measure::<KdTree>),

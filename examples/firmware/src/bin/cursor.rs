@@ -4,7 +4,7 @@
 #![no_main]
 
 use firmware::{
-    Answer, Counter, baked, camera, entry, finish,
+    Answer, Counter, baked, camera, entry, figure, finish,
     inlined::{InlinedTree, views},
 };
 use hitscan::{Ray, glam::Vec3};
@@ -40,6 +40,7 @@ fn main() -> ! {
     let rays = u64::from(by_cursor.rays);
     let ratio = cursor as f32 / closure as f32;
     println!("{} instructions per ray by the cursor", cursor / rays);
+    figure("cursor", "closest", cursor / rays);
     println!("{} by the inlined closure, ratio {ratio:.3}", closure / rays);
     println!("{} of them prepare the ray", prepare / rays);
     let same = by_cursor == baked.answer && by_closure == baked.answer && shadows == baked.answer.hits;

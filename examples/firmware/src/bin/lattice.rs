@@ -1,4 +1,4 @@
-//! Queries in whole numbers: instructions per ray, and bytes per triangle with its vertices, over torus knots on lattices.
+//! What `bench` shows, of queries in whole numbers over the same knots on lattices.
 
 #![no_std]
 #![no_main]
@@ -23,7 +23,8 @@ fn line(y: u32) -> (Vec3, Vec3, Vec3) {
 /// Prints the line of a contestant; whether its hits are the host's.
 #[inline(never)]
 fn measure<A: LatticeAccelerator + Stored<'static>>(counter: &Counter, contestant: &Contestant) -> bool {
-    let scene = contestant.baked.lattice_scene::<A, LatticeMesh<'_>>();
+    let Contestant { name, triangles, bytes, baked } = contestant;
+    let scene = baked.lattice_scene::<A, LatticeMesh<'_>>();
     let (mut setup, mut closest, mut any, mut row) = (0, 0, 0, 0);
     let (mut shadows, mut row_hits, mut stack) = (0, 0, 0);
     let mut answer = Answer::NONE;
@@ -48,25 +49,24 @@ fn measure<A: LatticeAccelerator + Stored<'static>>(counter: &Counter, contestan
             stack = stack.max(stack_of(&mut || _ = black_box(scene.closest_hit(&rays[32]))));
         }
     }
-    let rays = u64::from(answer.rays);
-    let bytes = contestant.bytes as f32 / contestant.triangles as f32;
-    let [closest, any, setup, row] = [closest, any, setup, row].map(|sum| sum / rays);
-    println!(
-        "{:5} {:<24} {bytes:6.2} B/tri {closest:5} closest {any:5} any, of it {setup:4} set-up; {row:5} in rows \
-         {stack:5} B of stack",
-        contestant.triangles, contestant.name,
-    );
+    let [closest, any, setup, row] = [closest, any, setup, row].map(|sum| sum / u64::from(answer.rays));
+    let per_triangle = |bytes: usize| bytes as f32 / *triangles as f32;
+    let (structure, all) = (per_triangle(*bytes), per_triangle(baked.bytes.len()));
+    println!("{triangles:9} {name:32} {structure:9.2} {all:6.2} {closest:7} {any:7} {stack:5}");
+    println!("          of it to make the ray {setup}; closest in rows {row}");
     // Directions are rounded otherwise in rows: at an edge they may differ.
-    answer == contestant.baked.answer && shadows == answer.hits && row_hits.abs_diff(answer.hits) < 20
+    answer == baked.answer && shadows == answer.hits && row_hits.abs_diff(answer.hits) < 20
 }
 
 #[entry]
 fn main() -> ! {
     let counter = Counter::new();
+    println!("                                           bytes/triangle   instructions stack");
+    println!("triangles structure                        structure all in closest     any bytes");
     let mut same = true;
     for contestant in black_box(LATTICES) {
         same &= match contestant.name.split(' ').next() {
-            Some("kdtree-compact") => measure::<CompactKdTree>(&counter, contestant),
+            Some("lattice-kdtree-compact") => measure::<CompactKdTree>(&counter, contestant),
             _ => measure::<DualSplit>(&counter, contestant),
         };
     }

@@ -27,13 +27,13 @@ pub struct CompactKdTraversal<'a> {
 impl<'a> CompactKdTraversal<'a> {
     #[inline]
     pub(super) fn new(tree: &CompactKdTree<'a>, ray: &PreparedRay) -> Self {
-        let next = Segment::whole(&tree.bounds, ray);
+        let slack = slack(ray.ray().t_min);
         Self {
             nodes: tree.nodes,
             references: tree.references,
             lattice: tree.lattice,
-            slack: next.map_or(0.0, |whole| slack(whole.enter)),
-            next,
+            slack,
+            next: Segment::whole(&tree.bounds, ray, slack),
             waiting: Waiting::new(),
         }
     }

@@ -1,0 +1,113 @@
+//! A mesh as an asset can hold it.
+
+#[cfg(feature = "lattice")]
+use engine::LatticeMesh;
+#[cfg(feature = "numbers")]
+use engine::primitives::Reordered;
+use engine::{
+    Hit, Mesh, PreparedRay, Primitives, Ray, Span,
+    asset::{Asset, Kind},
+    geometry::Aabb,
+    glam::Vec3,
+    primitives::{Probe, Proximity, Surface},
+};
+
+use crate::status::Status;
+
+/// A mesh, perhaps on a lattice, whose triangles may stand in another order than their owner's.
+#[derive(Clone, Copy)]
+pub enum Triangles {
+    /// In order.
+    Plain(Mesh<'static>),
+    /// With their owner's numbers.
+    #[cfg(feature = "numbers")]
+    Numbered(Reordered<'static, Mesh<'static>>),
+    /// With vertices on a lattice.
+    #[cfg(feature = "lattice")]
+    Lattice(LatticeMesh<'static>),
+    /// Both.
+    #[cfg(all(feature = "numbers", feature = "lattice"))]
+    NumberedLattice(Reordered<'static, LatticeMesh<'static>>),
+}
+
+/// What each kind answers.
+macro_rules! either {
+    ($triangles:expr, $mesh:ident => $answer:expr) => {
+        match $triangles {
+            Triangles::Plain($mesh) => $answer,
+            #[cfg(feature = "numbers")]
+            Triangles::Numbered($mesh) => $answer,
+            #[cfg(feature = "lattice")]
+            Triangles::Lattice($mesh) => $answer,
+            #[cfg(all(feature = "numbers", feature = "lattice"))]
+            Triangles::NumberedLattice($mesh) => $answer,
+        }
+    };
+}
+
+impl Triangles {
+    /// The triangles of an asset.
+    pub fn stored(asset: &Asset<'static>) -> Result<Self, Status> {
+        let numbered = has(asset, Kind::Numbers);
+        let on_lattice = has(asset, Kind::LatticeVertices);
+        Ok(match (numbered, on_lattice) {
+            (false, false) => Self::Plain(asset.read()?),
+            #[cfg(feature = "numbers")]
+            (true, false) => Self::Numbered(asset.read()?),
+            #[cfg(feature = "lattice")]
+            (false, true) => Self::Lattice(asset.read()?),
+            #[cfg(all(feature = "numbers", feature = "lattice"))]
+            (true, true) => Self::NumberedLattice(asset.read()?),
+            #[cfg(not(all(feature = "numbers", feature = "lattice")))]
+            _ => return Err(Status::LeftOut),
+        })
+    }
+}
+
+fn has(asset: &Asset<'_>, kind: Kind) -> bool {
+    asset.sections().any(|section| section.kind == kind)
+}
+
+impl Primitives for Triangles {
+    #[inline(always)]
+    fn len(&self) -> u32 {
+        either!(self, mesh => mesh.len())
+    }
+
+    fn bounds(&self, index: u32) -> Aabb {
+        either!(self, mesh => mesh.bounds(index))
+    }
+
+    #[inline]
+    fn intersect(&self, index: u32, ray: &PreparedRay, span: &Span) -> Option<Hit> {
+        either!(self, mesh => mesh.intersect(index, ray, span))
+    }
+
+    fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
+        either!(self, mesh => mesh.surface(ray, hit))
+    }
+
+    #[inline(always)]
+    fn mask(&self, index: u32) -> u32 {
+        either!(self, mesh => mesh.mask(index))
+    }
+
+    #[inline(always)]
+    fn is_certified(&self, index: u32) -> bool {
+        either!(self, mesh => mesh.is_certified(index))
+    }
+
+    fn clip(&self, index: u32, cell: &Aabb) -> Option<Aabb> {
+        either!(self, mesh => mesh.clip(index, cell))
+    }
+}
+
+impl Proximity for Triangles {
+    fn closest_point(&self, number: u32, point: Vec3) -> Option<Vec3> {
+        either!(self, mesh => mesh.closest_point(number, point))
+    }
+
+    fn approach(&self, index: u32, probe: &Probe) -> Option<Hit> {
+        either!(self, mesh => mesh.approach(index, probe))
+    }
+}

@@ -1,0 +1,67 @@
+//! Knots under structures of every kind, for `bench` and `calibrate`.
+
+use std::{error::Error, fmt::Write as _, fs, path::Path};
+
+use hitscan::{
+    Mesh, Scene,
+    accel::{List, Plan, Structure},
+    bake::{self, Baker},
+    bvh, dualsplit, grid, kdtree, octree,
+};
+
+use crate::{camera_answer, knot};
+
+/// What `bench` compares.
+fn plans() -> Vec<(&'static str, Plan)> {
+    vec![
+        ("grid small", Plan::Grid(grid::Options::small())),
+        ("grid balanced", Plan::Grid(grid::Options::balanced())),
+        ("grid fast", Plan::Grid(grid::Options::fast())),
+        ("octree balanced", Plan::Octree(octree::Options::balanced())),
+        ("kdtree small", Plan::KdTree(kdtree::Options::small())),
+        ("kdtree balanced", Plan::KdTree(kdtree::Options::balanced())),
+        ("kdtree fast", Plan::KdTree(kdtree::Options::fast())),
+        ("kdtree-compact small", Plan::CompactKdTree(kdtree::Options::small())),
+        ("kdtree-compact balanced", Plan::CompactKdTree(kdtree::Options::balanced())),
+        ("bvh balanced", Plan::Bvh(bvh::Options::balanced())),
+        ("dual-split small", Plan::DualSplit(dualsplit::Options::small())),
+        ("dual-split balanced", Plan::DualSplit(dualsplit::Options::balanced())),
+        ("dual-split fast", Plan::DualSplit(dualsplit::Options::fast())),
+    ]
+}
+
+/// The knots under every plan, in the order of the leaves where there are no references.
+pub fn contest(out: &Path, small: bool) -> Result<String, Box<dyn Error>> {
+    let mut code = "/// What `bench` compares.\npub static CONTEST: &[Contestant] = &[\n".to_string();
+    // All of it takes 3 MB of flash; a micro:bit has room for these over the smaller knot.
+    let few = ["grid small", "kdtree small", "bvh balanced", "dual-split balanced"];
+    let knots = [("1k", (100, 5)), ("5k", (250, 10))];
+    for (size, (along, around)) in knots.into_iter().take(if small { 1 } else { 2 }) {
+        let (vertices, triangles) = knot::mesh(along, around);
+        let mesh = Mesh::new(&vertices, triangles.as_slice())?;
+        for (name, plan) in plans().into_iter().filter(|(name, _)| !small || few.contains(name)) {
+            let kind = plan.kind().ok_or("every plan has a kind")?;
+            let mut words = bake::build(&mesh, &plan)?;
+            let mut corners = bake::reorder(&mesh, &(0..mesh.indices().len() as u32).collect::<Vec<_>>());
+            if let Some((ordered, order)) = bake::ordered(&Structure::open(kind, &words)?) {
+                corners = bake::reorder(&mesh, &order);
+                words = ordered;
+            }
+            let mesh = Mesh::new(&vertices, corners.as_slice())?;
+            let structure = Structure::open(kind, &words)?;
+            let asset = Baker::new().mesh(&mesh).structure(structure).finish();
+            let file = out.join(format!("{size} {name}.hits"));
+            fs::write(&file, asset.into_iter().flat_map(u32::to_le_bytes).collect::<Vec<_>>())?;
+            // By the list: the structures are what is compared.
+            let answer = camera_answer(&Scene::new(List::new(&mesh)?, &mesh)?);
+            let triangles = corners.len();
+            let bytes = words.len() * 4;
+            writeln!(
+                code,
+                "    Contestant {{ name: {name:?}, triangles: {triangles}, bytes: {bytes}, baked: Baked {{ bytes: \
+                 hitscan::include_asset!({file:?}), answer: {answer:?} }} }},"
+            )?;
+        }
+    }
+    Ok(code + "];\n")
+}

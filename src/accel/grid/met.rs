@@ -1,0 +1,55 @@
+use crate::accel::leaf::References;
+
+/// The primitives of a cell that are in an octant of it that the ray meets.
+#[derive(Clone, Copy, Debug)]
+pub struct Met<'a> {
+    next: u32,
+    end: u32,
+    references: References<'a>,
+    octants: &'a [u8],
+    /// A bit per octant that the ray meets.
+    on_the_way: u32,
+}
+
+/// What turns around the bytes of a word where its upper ones come first in memory.
+const FOURTH_FIRST: u32 = if cfg!(target_endian = "big") { 3 } else { 0 };
+
+impl<'a> Met<'a> {
+    /// Those of `count` references from the one at `first` that share a bit with `on_the_way`, if there are any.
+    #[inline(always)]
+    pub(super) fn of(
+        references: References<'a>,
+        octants: &'a [u8],
+        first: u32,
+        count: u32,
+        on_the_way: u32,
+    ) -> Option<Self> {
+        let mut met = Self { next: first, end: first.saturating_add(count), references, octants, on_the_way };
+        met.next = met.ahead()?;
+        Some(met)
+    }
+
+    /// The next reference, if there is one.
+    #[inline(always)]
+    fn ahead(&self) -> Option<u32> {
+        let mut next = self.next;
+        while next < self.end {
+            if u32::from(*self.octants.get((next ^ FOURTH_FIRST) as usize)?) & self.on_the_way != 0 {
+                return Some(next);
+            }
+            next += 1;
+        }
+        None
+    }
+}
+
+impl Iterator for Met<'_> {
+    type Item = u32;
+
+    #[inline(always)]
+    fn next(&mut self) -> Option<u32> {
+        let index = self.ahead()?;
+        self.next = index + 1;
+        Some(self.references.get(index))
+    }
+}
