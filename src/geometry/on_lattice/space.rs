@@ -102,7 +102,7 @@ impl LatticeSpace {
     /// ```
     /// use hitscan::{Ray, geometry::{Aabb, LatticeSpace}, glam::Vec3};
     /// let space = LatticeSpace::over(&Aabb::new(Vec3::ZERO, Vec3::ONE)).unwrap();
-    /// let row = space.rays(Vec3::new(0.5, 0.5, -2.0), Vec3::new(-1.0, 0.1, 2.0), Vec3::X * 0.125, 16);
+    /// let row = space.rays(Vec3::new(0.5, 0.5, -2.0), Vec3::new(-1.0, 0.1, 2.0), Vec3::X * 0.12, 16);
     /// assert_eq!(row.map(|ray| ray.is_some()).filter(|&meets| meets).count(), 8);
     /// ```
     #[must_use]
