@@ -22,7 +22,7 @@
 //! Let a ray hit a triangle at depth D, counted in planes of the major axis. The point P of the triangle that has the exact
 //! weights lies within 1/4 step of the ray along both minor axes, at a depth that differs from D by less than 3 · 65,535 ·
 //! 2^-15 + 2^-8 < 6.1, because each weight was cut by less than one unit in 2^15. So where D says the ray is, it is within
-//! 6.1 + 1/4 steps of P. The half-spaces that a structure bounds P by are numbers of planes that are at most 4 steps off
+//! 6.1 + 1/4 steps of P. The half-spaces that a structure bounds P by are numbers of planes that are at most 8 steps off
 //! ([`LatticeRay`] has the sum). To the exact depth at which the ray crosses such a plane, a ray's view of an axis adds or takes off what
 //! it may be wrong by, so that no box that P lies in is entered behind D or left before it, and nothing is pruned that ends
 //! a search at D. Nested boxes only take the greatest entry and the least exit, and depths of hits are compared as they are.
