@@ -151,7 +151,18 @@ impl<A: LatticeAccelerator, P: LatticeTriangles> LatticeScene<A, P> {
         let mut best = Best { depth: ray.depths.1, number: u32::MAX };
         let mut walk = self.accelerator.walk(ray);
         while let Some(leaf) = walk.next_leaf(ray, best.depth >> 8) {
-            best = self.closest_in(leaf, ray, best);
+            for index in leaf {
+                if let Some(Depth { depth, front }) = self.crossing(index, ray)
+                    && self.shows(front)
+                    && ray.depths.0 <= depth
+                    && depth <= best.depth
+                {
+                    let number = self.triangles.number(index);
+                    if depth < best.depth || number < best.number {
+                        best = Best { depth, number };
+                    }
+                }
+            }
         }
         (best.number != u32::MAX).then(|| Hit { t: ray.parameter(best.depth), primitive: best.number })
     }
@@ -161,39 +172,25 @@ impl<A: LatticeAccelerator, P: LatticeTriangles> LatticeScene<A, P> {
     #[inline(never)]
     pub fn any_hit_along(&self, ray: &LatticeRay) -> bool {
         let mut walk = self.accelerator.walk(ray);
-        while let Some(leaf) = walk.next_leaf(ray, ray.depths.1 >> 8) {
-            if self.any_in(leaf, ray) {
+        while let Some(mut leaf) = walk.next_leaf(ray, ray.depths.1 >> 8) {
+            if leaf.any(|index| self.hits(index, ray)) {
                 return true;
             }
         }
         false
     }
 
-    /// The best hit so far, or a better one with the primitives of a leaf.
+    /// Where the ray crosses a triangle that it sees.
     #[inline(never)] // Not within the walk: each would keep the other's numbers on the stack.
-    fn closest_in(&self, leaf: impl Iterator<Item = u32>, ray: &LatticeRay, mut best: Best) -> Best {
-        for index in leaf {
-            if let Some(Depth { depth, front }) = self.visible(index, ray).and_then(|corners| ray.crossing(corners))
-                && self.shows(front)
-                && ray.depths.0 <= depth
-                && depth <= best.depth
-            {
-                let number = self.triangles.number(index);
-                if depth < best.depth || number < best.number {
-                    best = Best { depth, number };
-                }
-            }
-        }
-        best
+    fn crossing(&self, index: u32, ray: &LatticeRay) -> Option<Depth> {
+        ray.crossing(self.visible(index, ray)?)
     }
 
-    /// Whether the ray hits a primitive of a leaf.
+    /// Whether the ray hits a triangle that it sees.
     #[inline(never)]
-    fn any_in(&self, mut leaf: impl Iterator<Item = u32>, ray: &LatticeRay) -> bool {
-        leaf.any(|index| {
-            let side = self.visible(index, ray).and_then(|corners| ray.crosses(corners, ray.depths));
-            side.is_some_and(|front| self.shows(front))
-        })
+    fn hits(&self, index: u32, ray: &LatticeRay) -> bool {
+        let side = self.visible(index, ray).and_then(|corners| ray.crosses(corners, ray.depths));
+        side.is_some_and(|front| self.shows(front))
     }
 
     /// The corners of a triangle that the ray may see.
