@@ -18,6 +18,7 @@ pub fn presets() -> Vec<(&'static str, Plan)> {
         ("grid small", Plan::Grid(grid::Options::small())),
         ("grid balanced", Plan::Grid(grid::Options::balanced())),
         ("grid fast", Plan::Grid(grid::Options::fast())),
+        ("grid quick", Plan::Grid(grid::Options::quick())),
         ("octree small", Plan::Octree(octree::Options::small())),
         ("octree balanced", Plan::Octree(octree::Options::balanced())),
         ("octree fast", Plan::Octree(octree::Options::fast())),

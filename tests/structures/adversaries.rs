@@ -6,7 +6,7 @@ use crate::common::{
     meshes::{Triangles, crossing, fan, hair, identical, shrinking},
     plans::presets,
 };
-use hitscan::{Hit, Mesh, PreparedRay, Primitives, Span, accel::Plan, bake, geometry::Aabb, kdtree};
+use hitscan::{Hit, Mesh, PreparedRay, Primitives, Span, accel::Plan, bake, dualsplit, geometry::Aabb, kdtree};
 
 /// Triangles that count how often a builder asks for their bounds, whole or clipped.
 struct Watched<'a> {
@@ -68,7 +68,10 @@ fn twice_as_many_primitives_take_hardly_more_than_twice_the_work() {
             let [few, many] = [10_000, 20_000].map(|count| effort(triangles, count, plan));
             println!("{adversary}, {label}: {few:.1?} and {many:.1?} asked and bytes per triangle");
             assert!(many.0 * 2.0 < few.0 * 2.6, "{adversary}, {label}: {few:?} {many:?}");
-            assert!(many.0 <= 14.0, "a logarithm of their number: {adversary}, {label}: {many:?}");
+            // A quick builder keeps no boxes: it asks once on each of its 28 levels, and where all are in one place twice.
+            let is_quick = matches!(plan, Plan::DualSplit(options) if options.method == dualsplit::Method::Quick);
+            let most = if is_quick { 57.0 } else { 14.0 };
+            assert!(many.0 <= most, "{adversary}, {label}: {many:?}");
         }
     }
 }

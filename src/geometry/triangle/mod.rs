@@ -162,7 +162,14 @@ impl Triangle {
     #[inline]
     #[must_use]
     pub fn bounds(&self) -> Aabb {
-        Aabb::new(self.a, self.a).union(&Aabb::new(self.b, self.b)).union(&Aabb::new(self.c, self.c))
+        // Three comparisons an axis, not four.
+        let along = |a: f32, b: f32, c: f32| {
+            let (low, high) = if a < b { (a, b) } else { (b, a) };
+            (least(low, c), greatest(high, c))
+        };
+        let (a, b, c) = (self.a, self.b, self.c);
+        let [x, y, z] = [along(a.x, b.x, c.x), along(a.y, b.y, c.y), along(a.z, b.z, c.z)];
+        Aabb::new(Vec3::new(x.0, y.0, z.0), Vec3::new(x.1, y.1, z.1))
     }
 
     /// A box around the part of the triangle inside `cell`, rounded outward; `None` if there certainly is none.

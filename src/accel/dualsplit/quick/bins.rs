@@ -116,9 +116,15 @@ impl Sums<'_> {
             let along = along / (to - from);
             let mut before = Bin::EMPTY;
             for (border, (bin, behind)) in (1..).zip(bins.iter().zip(from_bin.iter().skip(1))) {
-                before.add(bin);
+                if behind.count == 0 {
+                    break;
+                }
                 // Behind an empty bin it is as before it.
-                if bin.count == 0 || behind.count == 0 || before.count > most || behind.count > most {
+                if bin.count == 0 {
+                    continue;
+                }
+                before.add(bin);
+                if before.count > most || behind.count > most {
                     continue;
                 }
                 let left = (across + along * (before.max - from)) * before.count as i32 as f32;

@@ -44,6 +44,8 @@ const FEW: usize = 64;
 const HOPE: f32 = 0.33;
 
 /// Writes a tree over `primitives` to the front of `words`; how many it took.
+// Out of line, so that the stack holds one builder, not two.
+#[inline(never)]
 pub(super) fn build<P: Primitives + ?Sized>(
     primitives: &P,
     words: &mut [u32],
