@@ -96,7 +96,7 @@ impl LatticeSpace {
 
     /// The rays from `origin` along `first`, `first + step`, `first + 2 step` and so on: those of a row of pixels.
     ///
-    /// From one to the next there are three sums, and a quarter less to do than for a single [`ray`](Self::ray). They see
+    /// From one to the next there are three sums: a seventh to a third less to do than for a single [`ray`](Self::ray). They see
     /// everything, and t counts from 0 in lengths of their own directions.
     ///
     /// ```
