@@ -8,6 +8,7 @@ use crate::{
     asset::AssetError,
     geometry::Singular,
     instances::InstanceError,
+    lattice_scene::LatticeError,
     primitives::{MeshError, OrderError, SphereError},
     scene::Mismatch,
 };
@@ -103,6 +104,8 @@ any_of! {
     Asset(AssetError),
     /// The words of a structure.
     Malformed(Malformed),
+    /// A structure and a mesh that do not stand on one lattice.
+    Lattice(LatticeError),
     /// Placed scenes.
     Instance(InstanceError),
     /// A transform.

@@ -144,6 +144,7 @@ pub use error::Error;
 pub use geometry::{PreparedRay, Ray};
 pub use glam;
 pub use instances::{Instance, Instances};
+pub use lattice_scene::LatticeScene;
 pub use primitives::{Hit, LatticeMesh, Mesh, Primitives, Span, from_fn};
 pub use scene::Scene;
 
@@ -158,6 +159,7 @@ pub mod primitives;
 pub mod accel;
 
 pub mod instances;
+pub mod lattice_scene;
 pub mod query;
 pub mod scene;
 

@@ -5,7 +5,7 @@
 //! | 0 | `math`, `geometry`, `testing` |
 //! | 1 | `primitives`, `arena`, `asset` |
 //! | 2 | `accel` |
-//! | 3 | `scene`, `query`, `instances` |
+//! | 3 | `scene`, `lattice_scene`, `query`, `instances` |
 //! | 4 | `render`, `sensor` |
 //! | 5 | outlets, none of which imports another: `display`, `bake`, `parallel` |
 //!
@@ -21,7 +21,7 @@ const FLOORS: [&[&str]; 6] = [
     &["math", "geometry", "testing"],
     &["primitives", "arena", "asset"],
     &["accel"],
-    &["scene", "query", "instances"],
+    &["scene", "lattice_scene", "query", "instances"],
     &["render", "sensor"],
     &["display", "bake", "parallel"],
 ];

@@ -12,6 +12,8 @@ mod contest;
 mod hash;
 #[path = "bake/knot.rs"]
 mod knot;
+#[path = "bake/lattice.rs"]
+mod lattice;
 #[path = "src/picture.rs"]
 mod picture;
 #[path = "src/room.rs"]
@@ -60,7 +62,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     // A micro:bit's 256 kB hold all programs at once with the smaller tree.
     let options = if small { Options::small() } else { Options::balanced() };
-    let code = [knots(out, &options, model)?, ranges()?, contest::contest(out, small)?];
+    let code = [knots(out, &options, model)?, ranges()?, contest::contest(out, small)?, lattice::contest(out, small)?];
     Ok(fs::write(out.join("baked.rs"), code.concat())?)
 }
 

@@ -15,6 +15,7 @@ mod list;
 mod mailbox;
 mod malformed;
 pub mod octree;
+mod on_lattice;
 mod segment;
 mod sort;
 mod structure;
@@ -31,6 +32,7 @@ pub use list::List;
 pub use mailbox::Mailbox;
 pub use malformed::{Malformed, Reason};
 pub use octree::Octree;
+pub use on_lattice::{LatticeAccelerator, LatticeWalk};
 pub use structure::{AnyLeaf, AnyNode, AnyTraversal, Plan, Structure};
 
 use crate::geometry::{Aabb, PreparedRay};

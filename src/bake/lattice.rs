@@ -84,10 +84,10 @@ fn frame(bounds: Aabb) -> Aabb {
     }
     let longest = bounds.size().max_element();
     let end = |min: f32, max: f32| {
-        // Steps of two to four units in the last place of the largest coordinate; along an axis without extent, the
+        // Steps of four to eight units in the last place of the largest coordinate; along an axis without extent, the
         // frame is as thick as that needs.
         let largest = if min.abs() > max.abs() { min.abs() } else { max.abs() };
-        let least = (largest / 64.0).max(longest / 65_536.0).max(f32::MIN_POSITIVE * 131_072.0);
+        let least = (largest / 32.0).max(longest / 65_536.0).max(f32::MIN_POSITIVE * 131_072.0);
         let size = (max - min).max(least);
         // One step more, and what the roundings take.
         (min + size * (65_537.0 / 65_535.0)).min(MAX_COORDINATE)

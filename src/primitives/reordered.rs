@@ -140,6 +140,12 @@ impl<'a, P: Primitives> Reordered<'a, P> {
         }
     }
 
+    /// The number that the primitive at `place` has for its owner.
+    #[inline(always)]
+    pub(super) fn number(&self, place: u32) -> Option<u32> {
+        self.renumbering.numbers.get(place)
+    }
+
     /// The primitives in their new order.
     #[must_use]
     pub const fn inner(&self) -> &P {

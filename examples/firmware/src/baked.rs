@@ -1,9 +1,10 @@
 //! Assets in flash, made by `build.rs`: checked once, then used where they lie.
 
 use hitscan::{
-    KdTree, Mesh, Scene,
-    accel::Accelerator,
+    KdTree, LatticeScene, Mesh, Scene,
+    accel::{Accelerator, LatticeAccelerator},
     asset::{Asset, Stored},
+    primitives::LatticeTriangles,
 };
 
 use crate::{Answer, builds::BUILDS, hash::Hash};
@@ -35,6 +36,13 @@ impl Baked {
     /// The structure with its mesh.
     pub fn scene_under<A: Accelerator + Stored<'static>>(&self) -> Scene<A, Mesh<'static>> {
         self.asset().scene().expect("build.rs bakes meshes with their structures")
+    }
+
+    /// The structure with its mesh on a lattice.
+    pub fn lattice_scene<A: LatticeAccelerator + Stored<'static>, P: LatticeTriangles + Stored<'static>>(
+        &self,
+    ) -> LatticeScene<A, P> {
+        self.asset().lattice_scene().expect("build.rs bakes meshes with their structures")
     }
 }
 

@@ -9,7 +9,7 @@ pub const WIDTH: u32 = 64;
 pub const HEIGHT: u32 = 48;
 
 /// Where the camera stands.
-const EYE: Vec3 = Vec3::new(0.6, 0.4, -3.4);
+pub const EYE: Vec3 = Vec3::new(0.6, 0.4, -3.4);
 
 /// The rays of a row, left to right.
 pub fn row(y: u32) -> impl Iterator<Item = Ray> {

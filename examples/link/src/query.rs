@@ -3,10 +3,11 @@
 use core::hint::black_box;
 
 use hitscan::{
-    Accelerator, Arena, Hit, Instance, Instances, LatticeMesh, List, Mesh, Primitives, Scene,
-    accel::{Bounded, Hierarchy, Structure},
+    Accelerator, Arena, Hit, Instance, Instances, LatticeMesh, LatticeScene, List, Mesh, Primitives, Scene,
+    accel::{Bounded, Hierarchy, LatticeAccelerator, Structure},
+    error::BuildError,
     geometry::Transform,
-    primitives::{Indices, Order, Proximity, Renumbering, Reordered, Spheres},
+    primitives::{Indices, LatticeTriangles, Order, Proximity, Renumbering, Reordered, Spheres},
 };
 
 use crate::{
@@ -40,6 +41,23 @@ fn lattice(indices: Indices<'_>) {
     if let Ok(mesh) = LatticeMesh::new(&aabb(), numbers, indices) {
         black_box(mesh.positions().last());
         with(&mesh);
+        whole(List::new(&mesh), &mesh);
+        let mut memory = [0; 1024];
+        let mut arena = Arena::new(black_box(memory.as_mut_slice()));
+        match Structure::build(&mesh, &mut arena, &plan::any()) {
+            Ok(Structure::DualSplit(tree)) => whole(Ok(tree), mesh),
+            Ok(Structure::CompactKdTree(tree)) => whole(Ok(tree), mesh),
+            _ => {}
+        }
+    }
+}
+
+fn whole<A: LatticeAccelerator>(structure: Result<A, BuildError>, mesh: impl LatticeTriangles) {
+    let Ok(structure) = structure else { return };
+    let Ok(scene) = LatticeScene::new(structure, mesh) else { return };
+    black_box((scene.closest_hit(&ray()), scene.any_hit(&ray())));
+    for ray in scene.space().rays(vector(), vector(), vector(), word()).flatten() {
+        black_box((scene.closest_hit_along(&ray), scene.any_hit_along(&ray)));
     }
 }
 

@@ -10,6 +10,7 @@
 
 mod block;
 mod build;
+mod lattice;
 mod node;
 mod open;
 mod options;

@@ -8,6 +8,7 @@
 //! reach over it: a quarter more bytes for the same tests. That children overlap by a step is nothing to a walk, which
 //! keeps an interval for each.
 
+mod lattice;
 mod node;
 mod open;
 mod traverse;

@@ -1,7 +1,11 @@
 use crate::{
-    accel::kdtree::{
-        form::{FAR, LAST_PLANE, LONG, MANY},
-        node::Side,
+    accel::{
+        Leaf,
+        kdtree::{
+            form::{FAR, LAST_PLANE, LONG, MANY},
+            node::Side,
+        },
+        leaf::References,
     },
     geometry::Axis,
 };
@@ -126,6 +130,33 @@ impl Node {
     #[inline(always)]
     pub(crate) const fn is_far(self) -> bool {
         self.first() == FAR
+    }
+
+    /// The primitives of the leaf at `index`.
+    #[inline(always)]
+    pub(super) fn leaf_in<'a>(self, nodes: &'a [u32], index: u32, references: References<'a>) -> Leaf<'a> {
+        let (mut first, mut count) = (self.first(), self.count());
+        if self.is_far() | self.is_large() {
+            let behind = |by: u32| nodes.get((index + by) as usize).copied().unwrap_or(0);
+            if self.is_far() {
+                first = behind(1);
+            }
+            if self.is_large() {
+                count = behind(1 + u32::from(self.is_far()));
+            }
+        }
+        Leaf::of(if count == 1 { References::IDENTITY } else { references }, first, count)
+    }
+
+    /// Where the children of the inner node at `index` are, the left one first.
+    #[inline(always)]
+    pub(super) fn children(self, nodes: &[u32], index: u32) -> (u32, u32) {
+        let next = index + 1;
+        if self.is_long() {
+            (next + 1, index.wrapping_add(nodes.get(next as usize).copied().unwrap_or(0)))
+        } else {
+            (next, index + self.link())
+        }
     }
 
     /// Whether a leaf's count stands in a word of its own.

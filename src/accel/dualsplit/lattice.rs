@@ -1,0 +1,88 @@
+use core::mem;
+
+use super::{DualSplit, MAX_DEPTH, node::Head};
+use crate::{
+    accel::{
+        LatticeAccelerator, LatticeWalk, Leaf,
+        leaf::References,
+        on_lattice::{LatticeSegment, LatticeWaiting},
+    },
+    geometry::LatticeRay,
+};
+
+/// The walk through a [`DualSplit`] in whole numbers: that of
+/// [`DualSplitTraversal`](super::DualSplitTraversal), step by step.
+#[derive(Clone, Debug)]
+pub struct DualSplitWalk<'a> {
+    nodes: &'a [u32],
+    references: References<'a>,
+    /// Whether the first node was visited.
+    has_begun: bool,
+    /// Far children, the nearest on top.
+    waiting: LatticeWaiting<MAX_DEPTH>,
+}
+
+impl<'a> LatticeAccelerator for DualSplit<'a> {
+    type Walk = DualSplitWalk<'a>;
+
+    #[inline(always)]
+    fn walk(&self, _ray: &LatticeRay) -> DualSplitWalk<'a> {
+        DualSplitWalk {
+            nodes: self.nodes,
+            references: self.references,
+            has_begun: false,
+            waiting: LatticeWaiting::new(),
+        }
+    }
+}
+
+impl<'a> LatticeWalk for DualSplitWalk<'a> {
+    type Leaf = Leaf<'a>;
+
+    #[inline(never)]
+    fn next_leaf(&mut self, ray: &LatticeRay, depth: i32) -> Option<Leaf<'a>> {
+        let nodes = self.nodes;
+        let has_begun = mem::replace(&mut self.has_begun, true);
+        let mut cell = if has_begun { self.waiting.pop(depth)? } else { LatticeSegment::whole(ray) };
+        loop {
+            let head = Head::from_word(*nodes.get(cell.node as usize)?);
+            let axis = head.axis_or_leaf();
+            if axis == Head::LEAF {
+                return Some(Leaf::of(self.references, head.first(), head.count()));
+            }
+            let planes = *nodes.get(cell.node as usize + 1)?;
+            let child = cell.node + 2;
+            if head.is_carve() {
+                cell.node = child;
+                for (head, plane) in [(head, planes & 0xffff), (head.turned(), planes >> 16)] {
+                    let view = ray.views.get(head.axis_or_leaf() as usize)?;
+                    if head.is_upper() == head.is_descended(ray.descending) {
+                        cell.enter = view.entry(plane).max(cell.enter);
+                    } else {
+                        cell.exit = view.exit(plane).min(cell.exit);
+                    }
+                    if cell.enter > cell.exit {
+                        cell = self.waiting.pop(depth)?;
+                        break;
+                    }
+                }
+                continue;
+            }
+            // The near child ends at the plane in the lower half, the far one begins at the upper.
+            let descended = head.is_descended(ray.descending);
+            let (planes, near, far) =
+                if descended { (planes.rotate_left(16), head.right(), child) } else { (planes, child, head.right()) };
+            let view = ray.views.get(axis as usize)?;
+            let exit = view.exit(planes & 0xffff);
+            if exit < cell.enter {
+                cell.node = far;
+                continue;
+            }
+            let entry = view.entry(planes >> 16);
+            if entry <= cell.exit {
+                self.waiting.push(far, entry.max(cell.enter), cell.exit);
+            }
+            cell = LatticeSegment { node: near, enter: cell.enter, exit: exit.min(cell.exit) };
+        }
+    }
+}
