@@ -20,20 +20,31 @@ pub struct Costs {
     pub code: usize,
 }
 
+/// In which numbers a query is answered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Arithmetic {
+    /// In floating point, by a [`Scene`](hitscan::Scene).
+    Floats,
+    /// In whole numbers, by a [`LatticeScene`](hitscan::LatticeScene).
+    Integers,
+}
+
 impl Costs {
     /// Those of a structure, or of the list if that is none.
-    pub fn of(chip: Chip, structure: Option<Kind>) -> Option<Self> {
+    pub fn of(chip: Chip, structure: Option<Kind>, arithmetic: Arithmetic) -> Option<Self> {
         let costs = |name| TABLE.lines().skip(1).find_map(|line| Self::read(line, chip, name));
-        match structure {
+        match (arithmetic, structure) {
             // All of its tests are in one leaf.
-            None => costs("kdtree").map(|kd| Self { node: 0.0, ..kd }),
-            Some(Kind::Grid) => costs("grid"),
-            Some(Kind::Octree) => costs("octree"),
-            Some(Kind::KdTree) => costs("kdtree"),
-            Some(Kind::CompactKdTree) => costs("kdtree-compact"),
-            Some(Kind::Bvh) => costs("bvh"),
-            Some(Kind::DualSplit) => costs("dual-split"),
-            Some(_) => None,
+            (Arithmetic::Floats, None) => costs("kdtree").map(|kd| Self { node: 0.0, ..kd }),
+            (Arithmetic::Floats, Some(Kind::Grid)) => costs("grid"),
+            (Arithmetic::Floats, Some(Kind::Octree)) => costs("octree"),
+            (Arithmetic::Floats, Some(Kind::KdTree)) => costs("kdtree"),
+            (Arithmetic::Floats, Some(Kind::CompactKdTree)) => costs("kdtree-compact"),
+            (Arithmetic::Floats, Some(Kind::Bvh)) => costs("bvh"),
+            (Arithmetic::Floats, Some(Kind::DualSplit)) => costs("dual-split"),
+            (Arithmetic::Integers, Some(Kind::CompactKdTree)) => costs("lattice-kdtree-compact"),
+            (Arithmetic::Integers, Some(Kind::DualSplit)) => costs("lattice-dual-split"),
+            _ => None,
         }
     }
 
@@ -66,7 +77,7 @@ mod tests {
         let kinds = [Kind::Grid, Kind::Octree, Kind::KdTree, Kind::CompactKdTree, Kind::Bvh, Kind::DualSplit];
         for chip in Chip::value_variants() {
             for kind in kinds.map(Some).into_iter().chain([None]) {
-                let costs = Costs::of(*chip, kind).unwrap_or_else(|| panic!("{chip:?} {kind:?}"));
+                let costs = Costs::of(*chip, kind, Arithmetic::Floats).unwrap_or_else(|| panic!("{chip:?} {kind:?}"));
                 assert!(costs.setup > 100.0 && costs.test > 50.0 && costs.node >= 0.0, "{chip:?} {kind:?} {costs:?}");
                 assert!((200..4096).contains(&costs.stack) && (2048..65536).contains(&costs.code), "{costs:?}");
             }
@@ -74,10 +85,15 @@ mod tests {
     }
 
     #[test]
-    fn a_float_costs_more_without_an_fpu() {
-        let test = |chip| Costs::of(chip, Some(Kind::KdTree)).unwrap().test;
-        for (without, with) in [(Chip::M3, Chip::M4), (Chip::M0, Chip::M3), (Chip::Rv32imac, Chip::Rv32imafc)] {
-            assert!(test(without) > test(with), "{without:?} {with:?}");
+    fn a_float_costs_more_without_an_fpu_and_an_integer_does_not() {
+        let test = |chip, arithmetic| Costs::of(chip, Some(Kind::DualSplit), arithmetic).unwrap().test;
+        for (without, with) in [(Chip::M3, Chip::M4), (Chip::M0, Chip::M33), (Chip::Rv32imac, Chip::Rv32imafc)] {
+            assert!(test(without, Arithmetic::Floats) > 10.0 * test(with, Arithmetic::Floats), "{without:?} {with:?}");
+            assert!(
+                test(without, Arithmetic::Integers) < 3.0 * test(with, Arithmetic::Integers),
+                "{without:?} {with:?}"
+            );
         }
+        assert_eq!(Costs::of(Chip::M0, Some(Kind::Grid), Arithmetic::Integers), None);
     }
 }

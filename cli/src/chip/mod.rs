@@ -6,7 +6,7 @@ mod costs;
 mod prediction;
 
 pub use choose::choose;
-pub use costs::Costs;
+pub use costs::{Arithmetic, Costs};
 pub use prediction::Prediction;
 
 /// A family of microcontrollers, by what its cores can do.

@@ -2,7 +2,7 @@ use std::fmt;
 
 use hitscan::Primitives;
 
-use super::{Chip, Costs};
+use super::{Arithmetic, Chip, Costs};
 use crate::{
     failure::Failure,
     scene::{Built, Shape},
@@ -14,6 +14,7 @@ use crate::{
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Prediction {
     chip: Chip,
+    arithmetic: Arithmetic,
     costs: Costs,
     /// Instructions of a closest hit on average, over camera and bounce rays.
     pub typical: f64,
@@ -24,18 +25,25 @@ pub struct Prediction {
 }
 
 impl Prediction {
-    /// That of `primitives` under a structure, from what `rays` visit; `None` if its kind was not measured.
+    /// That of `primitives` under a structure, from what `rays` visit, in the numbers in which it is quicker; `None` if its
+    /// kind was not measured.
     pub fn new<P: Primitives>(chip: Chip, built: &Built, primitives: &P, rays: &Rays) -> Result<Option<Self>, Failure> {
         let structure = built.structure(primitives)?;
         let kind = structure.kind();
-        let Some(costs) = Costs::of(chip, kind) else { return Ok(None) };
+        let Some(floats) = Costs::of(chip, kind, Arithmetic::Floats) else { return Ok(None) };
+        // Only what stands on a lattice has a frame.
+        let integers = primitives.frame().and_then(|_| Costs::of(chip, kind, Arithmetic::Integers));
         let counts = Counts::default();
         let scene = scene(structure, primitives, Some(&counts))?;
-        let each = rays.primary.iter().chain(&rays.bounce).map(|ray| {
-            let Work { nodes, tests } = Work::of(&*scene, &counts, [ray].into_iter());
-            costs.instructions(nodes, tests)
-        });
-        let each: Vec<f64> = each.collect();
+        let rays = rays.primary.iter().chain(&rays.bounce);
+        let work: Vec<Work> = rays.map(|ray| Work::of(&*scene, &counts, [ray].into_iter())).collect();
+        let each =
+            |costs: &Costs| work.iter().map(|work| costs.instructions(work.nodes, work.tests)).collect::<Vec<_>>();
+        let sum = |costs: &Costs| each(costs).iter().sum::<f64>();
+        let (arithmetic, costs) = match integers {
+            Some(integers) if sum(&integers) < sum(&floats) => (Arithmetic::Integers, integers),
+            _ => (Arithmetic::Floats, floats),
+        };
         let bound = match kind {
             None => costs.instructions(0.0, f64::from(primitives.len())),
             Some(_) => {
@@ -43,16 +51,22 @@ impl Prediction {
                 costs.instructions(nodes as f64, references as f64)
             }
         };
-        let typical = each.iter().sum::<f64>() / each.len().max(1) as f64;
-        Ok(Some(Self { chip, costs, typical, dearest: each.into_iter().fold(0.0, f64::max), bound }))
+        let typical = sum(&costs) / work.len().max(1) as f64;
+        let dearest = each(&costs).into_iter().fold(0.0, f64::max);
+        Ok(Some(Self { chip, arithmetic, costs, typical, dearest, bound }))
     }
 
     /// Flash, RAM and instructions, for an asset of so many bytes.
-    pub fn rows(&self, asset: usize) -> [(&'static str, String); 4] {
+    pub fn rows(&self, asset: usize) -> [(&'static str, String); 5] {
         let Costs { stack, code, .. } = self.costs;
         let hundreds = |instructions: f64| count((instructions / 100.0).round() as u64 * 100);
         let (typical, dearest, bound) = (hundreds(self.typical), hundreds(self.dearest), hundreds(self.bound));
+        let numbers = match self.arithmetic {
+            Arithmetic::Floats => "floating point, `Scene`",
+            Arithmetic::Integers => "whole numbers, `LatticeScene`",
+        };
         [
+            ("answers in", numbers.to_owned()),
             ("flash", format!("{} bytes: the asset, and about {} of code", count(asset + code), count(code))),
             ("RAM", format!("none but {} bytes of stack", count(stack))),
             ("a ray", format!("{typical} instructions on average, {dearest} at most of those tried")),

@@ -91,7 +91,11 @@ impl Bake {
             let _ = writeln!(table, "vertices moved by at most {} to the lattice", snapped.displacement);
         }
         if let Some(chip) = self.target {
-            predict(&mut table, chip, &built, &model, words.len() * 4)?;
+            let asset = words.len() * 4;
+            match &shapes {
+                Triangles::Plain(mesh) => predict(&mut table, chip, &built, mesh, asset),
+                Triangles::OnLattice(mesh) => predict(&mut table, chip, &built, mesh, asset),
+            }?;
         }
         if self.output == Path::new("-") {
             failure::note(&table);

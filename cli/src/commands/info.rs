@@ -50,7 +50,10 @@ impl Info {
         }
         if let Some(chip) = self.target {
             let asset = asset.unwrap_or_else(|| bytes_of(&view.mesh) + built.bytes());
-            predict(&mut text, chip, &built, &view.mesh, asset)?;
+            match on_lattice(&source) {
+                Some(mesh) => predict(&mut text, chip, &built, &mesh, asset),
+                None => predict(&mut text, chip, &built, &view.mesh, asset),
+            }?;
         }
         print(&text)?;
         Ok(ExitCode::SUCCESS)
@@ -111,14 +114,20 @@ fn describe_mesh(text: &mut String, view: &View<'_>, anatomy: &Anatomy) {
     line(text, "duplicates", count(duplicate));
 }
 
+/// The triangles of an asset whose vertices stand on a lattice.
+fn on_lattice(source: &Source) -> Option<LatticeMesh<'_>> {
+    match source {
+        Source::Asset { words, .. } => Asset::from_words(words).ok()?.read().ok(),
+        Source::Model(_) => None,
+    }
+}
+
 /// The distance between planes of the asset's lattice, or what one would do to the mesh.
 fn describe_lattice(text: &mut String, source: &Source, view: &View<'_>) {
-    if let Source::Asset { words, .. } = source {
-        let on_lattice = Asset::from_words(words).map_err(Into::into).and_then(|asset| asset.read::<LatticeMesh<'_>>());
-        let Ok(on_lattice) = on_lattice else { return };
-        let step = on_lattice.frame().size() / LatticeMesh::LAST as f32;
+    if let Some(mesh) = on_lattice(source) {
+        let step = mesh.frame().size() / LatticeMesh::LAST as f32;
         line(text, "lattice", format!("planes {step} apart, vertices within {} of the model's", step.length() / 2.0));
-    } else {
+    } else if let Source::Model(_) = source {
         let displacement = bake::lattice(&view.mesh).displacement;
         line(text, "on a lattice", format!("vertices would move by up to {displacement}"));
     }

@@ -15,7 +15,7 @@ use std::{
     thread,
 };
 
-use hitscan::Mesh;
+use hitscan::Primitives;
 
 use crate::{
     chip::{Chip, Prediction},
@@ -64,7 +64,13 @@ fn line(text: &mut String, what: &str, value: impl fmt::Display) {
 }
 
 /// Adds what a scene, an asset of so many bytes, will cost on a chip.
-fn predict(text: &mut String, chip: Chip, built: &Built, mesh: &Mesh<'_>, asset: usize) -> Result<(), Failure> {
+fn predict<P: Primitives + Sync>(
+    text: &mut String,
+    chip: Chip,
+    built: &Built,
+    mesh: &P,
+    asset: usize,
+) -> Result<(), Failure> {
     let rays = Rays::around(&*built.scene(mesh)?);
     let _ = writeln!(text, "on a {}", chip.title());
     match Prediction::new(chip, built, mesh, &rays)? {

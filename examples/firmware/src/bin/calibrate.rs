@@ -8,12 +8,12 @@ use core::{cell::Cell, hint::black_box};
 
 use firmware::{
     Counter,
-    baked::{CONTEST, Contestant},
+    baked::{CONTEST, Contestant, LATTICES},
     camera, entry, finish, stack_of,
 };
 use hitscan::{
-    Bvh, CompactKdTree, DualSplit, Grid, KdTree, Mesh, Octree, Scene,
-    accel::{self, Accelerator},
+    Bvh, CompactKdTree, DualSplit, Grid, KdTree, LatticeMesh, Mesh, Octree, Primitives, Ray, Scene,
+    accel::{self, Accelerator, LatticeAccelerator},
     asset::Stored,
     primitives,
 };
@@ -52,25 +52,53 @@ impl Fit {
 /// What adds the rays at a contestant.
 type Measure = fn(&Counter, &Contestant, &mut Fit);
 
-/// Adds the rays at a contestant.
+/// Floating point.
 #[inline(never)]
-fn measure<A: Accelerator + Stored<'static>>(counter: &Counter, contestant: &Contestant, fit: &mut Fit) {
+fn floats<A: Accelerator + Stored<'static>>(counter: &Counter, contestant: &Contestant, fit: &mut Fit) {
     let scene: Scene<A, Mesh> = contestant.baked.scene_under();
+    measure::<A, Mesh>(counter, contestant, fit, |ray| scene.closest_hit(ray).is_some(), |ray| scene.any_hit(ray));
+}
+
+/// Whole numbers.
+#[inline(never)]
+fn integers<A>(counter: &Counter, contestant: &Contestant, fit: &mut Fit)
+where
+    A: LatticeAccelerator + Accelerator + Stored<'static>,
+{
+    let scene = contestant.baked.lattice_scene::<A, LatticeMesh>();
+    measure::<A, LatticeMesh>(
+        counter,
+        contestant,
+        fit,
+        |ray| scene.closest_hit(ray).is_some(),
+        |ray| scene.any_hit(ray),
+    );
+}
+
+/// Adds the rays at a contestant: what the queries take, against what a counting scene visits.
+#[inline(always)]
+fn measure<A: Accelerator + Stored<'static>, P: Primitives + Stored<'static>>(
+    counter: &Counter,
+    contestant: &Contestant,
+    fit: &mut Fit,
+    closest_hit: impl Fn(&Ray) -> bool,
+    any_hit: impl Fn(&Ray) -> bool,
+) {
     let (nodes, tests) = (Cell::new(0), Cell::new(0));
     let counted = Scene::new(
         accel::Counted::new(contestant.baked.read::<A>(), &nodes),
-        primitives::Counted::new(contestant.baked.read::<Mesh>(), &tests),
+        primitives::Counted::new(contestant.baked.read::<P>(), &tests),
     );
     let counted = counted.expect("the same scene");
     for ray in (0..camera::HEIGHT).step_by(4).flat_map(camera::row) {
         let (before, tested) = (nodes.get(), tests.get());
         black_box(counted.closest_hit(&ray));
-        let instructions = counter.instructions(|| _ = black_box(scene.closest_hit(black_box(&ray))));
+        let instructions = counter.instructions(|| _ = black_box(closest_hit(black_box(&ray))));
         fit.add(nodes.get() - before, tests.get() - tested, instructions);
     }
     for ray in camera::row(camera::HEIGHT / 2).step_by(8) {
-        let closest = stack_of(&mut || _ = black_box(scene.closest_hit(&ray)));
-        let any = stack_of(&mut || _ = black_box(scene.any_hit(&ray)));
+        let closest = stack_of(&mut || _ = black_box(closest_hit(&ray)));
+        let any = stack_of(&mut || _ = black_box(any_hit(&ray)));
         fit.stack = fit.stack.max(closest).max(any);
     }
 }
@@ -78,18 +106,21 @@ fn measure<A: Accelerator + Stored<'static>>(counter: &Counter, contestant: &Con
 #[entry]
 fn main() -> ! {
     let counter = Counter::new();
-    let measures: [(&str, Measure); 6] = [
-        ("grid", measure::<Grid>),
-        ("octree", measure::<Octree>),
-        ("kdtree", measure::<KdTree>),
-        ("kdtree-compact", measure::<CompactKdTree>),
-        ("bvh", measure::<Bvh>),
-        ("dual-split", measure::<DualSplit>),
+    let measures: [(&str, Measure); 8] = [
+        ("grid", floats::<Grid>),
+        ("octree", floats::<Octree>),
+        ("kdtree", floats::<KdTree>),
+        ("kdtree-compact", floats::<CompactKdTree>),
+        ("bvh", floats::<Bvh>),
+        ("dual-split", floats::<DualSplit>),
+        ("lattice-kdtree-compact", integers::<CompactKdTree>),
+        ("lattice-dual-split", integers::<DualSplit>),
     ];
     let mut plausible = true;
     for (name, measure) in measures {
         let mut fit = Fit::default();
-        let family = CONTEST.iter().filter(|contestant| contestant.name.split(' ').next() == Some(name));
+        let family =
+            CONTEST.iter().chain(LATTICES).filter(|contestant| contestant.name.split(' ').next() == Some(name));
         family.for_each(|contestant| measure(&counter, contestant, &mut fit));
         print!("{name}");
         for cost in fit.solve() {

@@ -13,9 +13,9 @@ use semihosting::process;
 
 #[cfg(feature = "bvh")]
 use hitscan::Bvh as Structure;
-#[cfg(feature = "kdtree-compact")]
+#[cfg(any(feature = "kdtree-compact", feature = "lattice-kdtree-compact"))]
 use hitscan::CompactKdTree as Structure;
-#[cfg(feature = "dual-split")]
+#[cfg(any(feature = "dual-split", feature = "lattice-dual-split"))]
 use hitscan::DualSplit as Structure;
 #[cfg(feature = "grid")]
 use hitscan::Grid as Structure;
@@ -27,7 +27,11 @@ use hitscan::Octree as Structure;
 /// Whether a ray's two queries agree.
 #[cfg(feature = "structure")]
 fn agree() -> Result<bool, hitscan::Error> {
-    let scene = hitscan::asset::Asset::open(black_box(KNOT.bytes))?.scene::<Structure, hitscan::Mesh>()?;
+    let asset = hitscan::asset::Asset::open(black_box(KNOT.bytes))?;
+    #[cfg(not(feature = "lattice"))]
+    let scene = asset.scene::<Structure, hitscan::Mesh>()?;
+    #[cfg(feature = "lattice")]
+    let scene = asset.lattice_scene::<Structure, hitscan::LatticeMesh>()?;
     let mut rays = camera::row(camera::HEIGHT / 2);
     Ok(rays.all(|ray| scene.closest_hit(&ray).is_some() == scene.any_hit(&ray)))
 }
