@@ -1,7 +1,7 @@
 //! Assets in flash, made by `build.rs`: checked once, then used where they lie.
 
 use hitscan::{
-    KdTree, LatticeScene, Mesh, Scene,
+    KdTree, LatticeMesh, LatticeScene, Mesh, Scene,
     accel::{Accelerator, LatticeAccelerator},
     asset::{Asset, Stored},
     primitives::LatticeTriangles,
@@ -38,7 +38,12 @@ impl Baked {
         self.asset().scene().expect("build.rs bakes meshes with their structures")
     }
 
-    /// The structure with its mesh on a lattice.
+    /// The structure with its mesh on a lattice, in floating point.
+    pub fn scene_on_lattice<A: Accelerator + Stored<'static>>(&self) -> Scene<A, LatticeMesh<'static>> {
+        self.asset().scene().expect("build.rs bakes meshes with their structures")
+    }
+
+    /// The structure with its mesh on a lattice, in whole numbers.
     pub fn lattice_scene<A: LatticeAccelerator + Stored<'static>, P: LatticeTriangles + Stored<'static>>(
         &self,
     ) -> LatticeScene<A, P> {

@@ -10,7 +10,12 @@ use firmware::{
     baked::{Contestant, LATTICES},
     camera, entry, finish, stack_of,
 };
-use hitscan::{CompactKdTree, DualSplit, LatticeMesh, Ray, accel::LatticeAccelerator, asset::Stored, glam::Vec3};
+use hitscan::{
+    CompactKdTree, DualSplit, LatticeMesh, Ray,
+    accel::{Accelerator, LatticeAccelerator},
+    asset::Stored,
+    glam::Vec3,
+};
 use semihosting::println;
 
 /// Where the rays of a row begin, the direction of the first, and what each next one has more; none has length 1.
@@ -22,7 +27,7 @@ fn line(y: u32) -> (Vec3, Vec3, Vec3) {
 
 /// Prints the line of a contestant; whether its hits are the host's.
 #[inline(never)]
-fn measure<A: LatticeAccelerator + Stored<'static>>(counter: &Counter, contestant: &Contestant) -> bool {
+fn measure<A: LatticeAccelerator + Accelerator + Stored<'static>>(counter: &Counter, contestant: &Contestant) -> bool {
     let Contestant { name, triangles, bytes, baked } = contestant;
     let scene = baked.lattice_scene::<A, LatticeMesh<'_>>();
     let (mut setup, mut closest, mut any, mut row) = (0, 0, 0, 0);
@@ -54,8 +59,26 @@ fn measure<A: LatticeAccelerator + Stored<'static>>(counter: &Counter, contestan
     let (structure, all) = (per_triangle(*bytes), per_triangle(baked.bytes.len()));
     println!("{triangles:9} {name:32} {structure:9.2} {all:6.2} {closest:7} {any:7} {stack:5}");
     println!("          of it to make the ray {setup}; closest in rows {row}");
+    if cfg!(any(target_abi = "eabihf", target_feature = "f")) {
+        let floats = floats::<A>(counter, contestant);
+        println!("          closest in floating point, by a Scene, {floats}");
+    }
     // Directions are rounded otherwise in rows: at an edge they may differ.
     answer == baked.answer && shadows == answer.hits && row_hits.abs_diff(answer.hits) < 20
+}
+
+/// Instructions of a closest hit by the float path over the same asset.
+fn floats<A: Accelerator + Stored<'static>>(counter: &Counter, contestant: &Contestant) -> u64 {
+    let scene = contestant.baked.scene_on_lattice::<A>();
+    let mut closest = 0;
+    let mut shadows = 0;
+    for ray in (0..camera::HEIGHT).flat_map(camera::row) {
+        closest += counter.instructions(|| _ = black_box(scene.closest_hit(black_box(&ray))));
+        // Two callers, as in any program with shadows.
+        shadows += u64::from(scene.any_hit(&ray));
+    }
+    black_box(shadows);
+    closest / u64::from(camera::WIDTH * camera::HEIGHT)
 }
 
 #[entry]
