@@ -16,6 +16,7 @@ mod mailbox;
 mod malformed;
 pub mod octree;
 mod segment;
+mod slope;
 mod sort;
 mod structure;
 

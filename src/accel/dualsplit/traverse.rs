@@ -4,8 +4,9 @@ use crate::{
         Leaf, Step, Traversal,
         leaf::References,
         segment::{Segment, Waiting},
+        slope::Slopes,
     },
-    geometry::{Lattice, PreparedRay, beyond, slack},
+    geometry::{PreparedRay, beyond, slack},
     math::{greatest, least},
 };
 
@@ -14,8 +15,7 @@ use crate::{
 pub struct DualSplitTraversal<'a> {
     nodes: &'a [u32],
     references: References<'a>,
-    lattice: Lattice,
-    slack: f32,
+    slopes: Slopes,
     /// The cell to go on with: the whole at first, after a pause the one before which it was; none behind a leaf.
     next: Option<Segment>,
     /// Far children, the nearest on top.
@@ -26,12 +26,18 @@ impl<'a> DualSplitTraversal<'a> {
     #[inline]
     pub(super) fn new(tree: &DualSplit<'a>, ray: &PreparedRay) -> Self {
         let slack = slack(ray.ray().t_min);
+        let next = Segment::whole(&tree.bounds, ray, slack);
         Self {
             nodes: tree.nodes,
             references: tree.references,
-            lattice: tree.lattice,
-            slack,
-            next: Segment::whole(&tree.bounds, ray, slack),
+            slopes: Slopes::new(
+                ray,
+                &tree.lattice,
+                0.0,
+                slack,
+                next.map_or((0.0, 0.0), |whole| (whole.enter, whole.exit)),
+            ),
+            next,
             waiting: Waiting::new(),
         }
     }
@@ -44,7 +50,7 @@ impl<'a> DualSplitTraversal<'a> {
 
     #[inline(always)]
     fn advance<const BOUNDED: bool>(&mut self, ray: &PreparedRay, t_max: f32, budget: &mut u32) -> Step<Leaf<'a>> {
-        let (nodes, slack, end) = (self.nodes, self.slack, beyond(t_max));
+        let (nodes, end) = (self.nodes, beyond(t_max));
         // The cell at hand is in registers, not in `self`: that is a third of the instructions.
         let Some(mut cell) = self.next.take().or_else(|| self.pop(end)) else { return Step::Done };
         loop {
@@ -67,13 +73,11 @@ impl<'a> DualSplitTraversal<'a> {
             if head.is_carve() {
                 cell.node = child;
                 for (head, plane) in [(head, planes & 0xffff), (head.turned(), planes >> 16)] {
-                    let axis = head.axis_or_leaf();
-                    let view = &ray.views[axis as usize];
-                    let distance = self.lattice.plane(axis, plane) - view.origin;
+                    let slope = self.slopes.along(head.axis_or_leaf());
                     if head.is_upper() == head.is_descended(ray.descending) {
-                        cell.enter = greatest(distance * view.entry, cell.enter);
+                        cell.enter = greatest(slope.entry(plane), cell.enter);
                     } else {
-                        cell.exit = least(distance * view.exit + slack, cell.exit);
+                        cell.exit = least(slope.exit(plane), cell.exit);
                     }
                     if cell.enter > cell.exit {
                         break;
@@ -91,14 +95,14 @@ impl<'a> DualSplitTraversal<'a> {
             let descended = head.is_descended(ray.descending);
             let (planes, near, far) =
                 if descended { (planes.rotate_left(16), head.right(), child) } else { (planes, child, head.right()) };
-            let view = &ray.views[axis as usize];
-            let exit = (self.lattice.plane(axis, planes & 0xffff) - view.origin) * view.exit + slack;
+            let slope = self.slopes.along(axis);
+            let exit = slope.exit(planes & 0xffff);
             if exit < cell.enter {
                 // The far child: as nearly all rays that miss the near one meet it, its plane need not be looked at.
                 cell.node = far;
                 continue;
             }
-            let entry = (self.lattice.plane(axis, planes >> 16) - view.origin) * view.entry;
+            let entry = slope.entry(planes >> 16);
             if !(entry > cell.exit) {
                 self.waiting.push(Segment { node: far, enter: greatest(entry, cell.enter), exit: cell.exit });
             }

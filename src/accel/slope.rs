@@ -1,0 +1,238 @@
+use crate::geometry::{Axis, AxisView, Lattice, PreparedRay};
+
+/// How the parameters of an axis' planes grow with their numbers, for planes where a ray enters and for those where it
+/// leaves.
+///
+/// A conversion, a product and a sum in the place of twice as many steps. These are not the bits that the plane's position
+/// gives, but an entry is never later than that gives it and an exit never earlier, so a walk visits all that it would.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Slope {
+    entry: Line,
+    exit: Line,
+}
+
+/// `slope * number + start`.
+#[derive(Clone, Copy, Debug)]
+struct Line {
+    slope: f32,
+    start: f32,
+}
+
+impl Line {
+    #[inline(always)]
+    fn at(self, number: f32) -> f32 {
+        self.slope * number + self.start
+    }
+}
+
+/// By which slopes are late and early, in parts of what [`reach`] says: see [`Slopes::new`].
+const ERROR: f32 = 2.0 / 16_777_216.0;
+
+/// Parameters up to here are far from overflow.
+const FAR: f32 = 1.0e36;
+
+/// Along an axis where the direction is 0: from one plane to the next, so many times as far as the ray is long.
+const STEEP: f32 = 1024.0;
+
+/// The longest ray of which this is calculated, 2^60.
+const LONG: f32 = 1.152_921_5e18;
+
+/// What roundings are measured by: an axis' planes lie in a lattice from `first` on over an `extent`, from `begin` on as
+/// seen from the ray's origin.
+///
+/// A position is rounded relative to coordinates, all else relative to distances from the origin.
+#[inline(always)]
+fn reach(first: f32, begin: f32, extent: f32) -> f32 {
+    first.abs() + (begin.abs() + extent) * 6.0
+}
+
+/// The slopes of all axes.
+///
+/// *The error.* Let `o` be the origin, `r` the reciprocal, `f`, `h` and `l` the first plane, the step and the extent,
+/// `g = |f - o| + l`, `u = 2^-24`. What the position gives, `fl(fl(fl(f + fl(k h)) - o) r) + s`, is off by at most `u l` for
+/// the product, `u (|f| + l)` for the position, and `u g` each for the difference, the product with `r` and the sum with
+/// `s`: `u (|f| + 5 g)` times `|r|`. The slope is off by `3 u |f - o|` for the difference, the step added to it and the product,
+/// `2 u l` for `h r` and its product with `k`, and `2 u g` for both sums: `u 5 g`. Of the sum of both,
+/// `u (|f| + 10 g)` and terms in `u²`, [`ERROR`] times [`reach`] is `u (2 |f| + 12 g)`. Sums with `s` and with the error
+/// itself take up to `5 u s` more, for which `s` is lengthened by `8 u`, and a share of the rest. Underflow takes less than
+/// `2^-126`: a step is no denormal, and `2^-150` in its product with `r` counts up to `2^20` times.
+#[derive(Clone, Debug)]
+pub(crate) struct Slopes {
+    /// By axis; the fourth is there so that an index of two bits needs no check.
+    axes: [Slope; 4],
+}
+
+impl Slopes {
+    /// The planes of `lattice` as `ray` sees them; exits are late by `slack`.
+    ///
+    /// Of planes that are `thickness` steps thick, a number names the face before, whichever way the ray comes. It is in the
+    /// bounds from `enter` to `exit`.
+    #[inline(always)]
+    pub(crate) fn new(
+        ray: &PreparedRay,
+        lattice: &Lattice,
+        thickness: f32,
+        slack: f32,
+        (enter, exit): (f32, f32),
+    ) -> Self {
+        let late = slack * (1.0 + 8.0 / 16_777_216.0);
+        let along = |axis: Axis| Slope::along(axis, ray, lattice, thickness, late);
+        let ((x, a), (y, b), (z, c)) = (along(Axis::X), along(Axis::Y), along(Axis::Z));
+        let mut slopes = Self { axes: [x, y, z, z] };
+        // NaN and infinity are not below.
+        if !(a + b + c < FAR) {
+            slopes.repair(ray, lattice, thickness, (enter, exit));
+        }
+        slopes
+    }
+
+    /// Those of an axis by its number, of which two bits count.
+    #[inline(always)]
+    pub(crate) fn along(&self, axis: u32) -> &Slope {
+        &self.axes[axis as usize & 3]
+    }
+
+    /// Slopes of axes along which the reciprocal is too large to calculate with.
+    #[cold]
+    #[inline(never)]
+    fn repair(&mut self, ray: &PreparedRay, lattice: &Lattice, thickness: f32, (enter, exit): (f32, f32)) {
+        let end = if enter.abs() > exit.abs() { enter.abs() } else { exit.abs() };
+        for (axis, slope) in Axis::ALL.into_iter().zip(&mut self.axes) {
+            let view = &ray.views[axis as usize];
+            let (first, step) = lattice.along(axis as u32);
+            let reach = reach(first, first - view.origin, lattice.extent(axis));
+            if !(reach * view.exit.abs() < FAR) {
+                *slope = Slope::steep(view, (first, step), thickness, reach, end);
+            }
+        }
+    }
+}
+
+impl Slope {
+    /// Decides nothing.
+    const NONE: Self =
+        Self { entry: Line { slope: 0.0, start: f32::NEG_INFINITY }, exit: Line { slope: 0.0, start: f32::INFINITY } };
+
+    /// That of an axis, and the greatest of its parameters, about.
+    #[inline(always)]
+    fn along(axis: Axis, ray: &PreparedRay, lattice: &Lattice, thickness: f32, late: f32) -> (Self, f32) {
+        let view = &ray.views[axis as usize];
+        let (first, step) = lattice.along(axis as u32);
+        let begin = first - view.origin;
+        let largest = reach(first, begin, lattice.extent(axis)) * view.exit.abs();
+        let error = largest * ERROR + f32::MIN_POSITIVE;
+        let (enters, leaves) = faces(view, begin, step, thickness);
+        let entry = Line { slope: step * view.entry, start: enters * view.entry - error };
+        let exit = Line { slope: step * view.exit, start: leaves * view.exit + (late + error) };
+        (Self { entry, exit }, largest)
+    }
+
+    /// Where the direction is 0: planes before the origin are far before the ray's part in the bounds, which ends by `end`,
+    /// those behind it far behind that.
+    ///
+    /// The sign of a distance in steps is what counts. It is off as a parameter is, and by `u` of `end`, which is less than
+    /// half of what is allowed for a step.
+    fn steep(view: &AxisView, (first, step): (f32, f32), thickness: f32, reach: f32, end: f32) -> Self {
+        if view.entry.is_finite() || view.entry.is_nan() || !(end < LONG) {
+            // A finite reciprocal that is too large, or too long a ray.
+            return Self::NONE;
+        }
+        let slope = (end * STEEP).copysign(view.entry);
+        let error = reach / step * ERROR * slope.abs() + end;
+        let (enters, leaves) = faces(view, first - view.origin, step, thickness);
+        let entry = Line { slope, start: enters / step * slope - error };
+        let exit = Line { slope, start: leaves / step * slope + error };
+        Self { entry, exit }
+    }
+
+    /// Where a ray enters at a plane, or before.
+    #[inline(always)]
+    pub(crate) fn entry(&self, plane: u32) -> f32 {
+        // As a signed number: chips and hosts convert these in one instruction.
+        self.entry.at(plane as i32 as f32)
+    }
+
+    /// Where a ray leaves at a plane, or behind.
+    #[inline(always)]
+    pub(crate) fn exit(&self, plane: u32) -> f32 {
+        self.exit.at(plane as i32 as f32)
+    }
+}
+
+/// Where the first plane's face lies at which the ray enters, and that at which it leaves.
+#[inline(always)]
+fn faces(view: &AxisView, begin: f32, step: f32, thickness: f32) -> (f32, f32) {
+    if thickness == 0.0 {
+        return (begin, begin);
+    }
+    let end = begin + step * thickness;
+    if view.ascends() { (begin, end) } else { (end, begin) }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+
+    use super::*;
+    use crate::{
+        accel::segment::Segment,
+        geometry::{Aabb, Ray, slack},
+        math::{greatest, least},
+        testing::Random,
+    };
+
+    /// How many planes cut a ray off, by their positions and by their numbers, in scenes of these sizes at these distances
+    /// from the world's origin; nothing may be cut off that was not.
+    fn cut_offs(sizes: &[f32], offsets: &[f32], t_mins: &[f32], factors: &[f32]) -> (u32, u32) {
+        let mut random = Random::new(7);
+        let (mut before, mut now) = (0, 0);
+        for _ in 0..30_000 {
+            let size = sizes[random.below(sizes.len() as u32) as usize];
+            let offset = offsets[random.below(offsets.len() as u32) as usize] * size;
+            let mut point = |scale: f32| Vec3::from_array([0; 3].map(|_| (random.unit() - 0.5) * scale));
+            let (a, b, origin) = (point(size) + offset, point(size) + offset, point(size * 1.5) + offset);
+            let mut direction = point(2.0);
+            for axis in 0..3 {
+                direction[axis] *= factors[random.below(factors.len() as u32) as usize];
+            }
+            let t_min = t_mins[random.below(t_mins.len() as u32) as usize];
+            let Some(ray) = Ray::new(origin, direction).starting_at(t_min).prepare() else { continue };
+            let (bounds, slack) = (Aabb::around([a, b]), slack(ray.ray().t_min));
+            let Some(Segment { enter, exit, .. }) = Segment::whole(&bounds, &ray, slack) else { continue };
+            let last = [0xffff, 0x3fff, 1][random.below(3) as usize];
+            let thickness = random.below(2);
+            let lattice = Lattice::over(&bounds, [last; 3]);
+            let slopes = Slopes::new(&ray, &lattice, thickness as f32, slack, (enter, exit));
+            for axis in Axis::ALL {
+                let (view, slope) = (&ray.views[axis as usize], slopes.along(axis as u32));
+                for number in [0, last, random.below(last + 1), random.below(last + 1)] {
+                    let (enters, leaves) =
+                        if view.ascends() { (number, number + thickness) } else { (number + thickness, number) };
+                    let entry = (lattice.position(axis, enters) - view.origin) * view.entry;
+                    let leave = (lattice.position(axis, leaves) - view.origin) * view.exit + slack;
+                    let (early, late) = (slope.entry(number), slope.exit(number));
+                    assert!(greatest(early, enter) <= greatest(entry, enter), "{ray:?} {bounds:?} {number}");
+                    assert!(least(late, exit) >= least(leave, exit), "{ray:?} {bounds:?} {number}");
+                    before += u32::from(entry > exit || leave < enter);
+                    now += u32::from(early > exit || late < enter);
+                }
+            }
+        }
+        (before, now)
+    }
+
+    #[test]
+    fn no_part_of_a_ray_is_lost_against_positions() {
+        let extremes = [1.0, 1.0e-3, 1.0e-40, 1.0e30];
+        let factors = [1.0, 1.0, 0.0, -0.0, 1.0e-42, 1.0e-30];
+        cut_offs(&extremes, &[0.0, 1.0, -1.0e5, 3.0e36], &[0.0, -1.0, -1.0e9, f32::NEG_INFINITY], &factors);
+    }
+
+    #[test]
+    fn hardly_less_is_cut_off() {
+        for (offset, percent) in [(0.0, 99), (-1.0e3, 99), (1.0e5, 95)] {
+            let (before, now) = cut_offs(&[1.0, 1.0e-3, 1.0e6], &[offset], &[0.0, -1.0], &[1.0, 1.0, 1.0, 0.0, -0.0]);
+            assert!(before > 10_000 && now * 100 >= before * percent, "{offset} {before} {now}");
+        }
+    }
+}
