@@ -34,8 +34,8 @@ pub(crate) const LIFT: f32 = 18_446_744_073_709_551_616.0;
 /// A point on it is `origin + t * direction`; the direction need not have unit length.
 ///
 /// A ray is *invalid* and misses everything if a component is not finite, an origin coordinate exceeds
-/// [`MAX_COORDINATE`](super::MAX_COORDINATE), the interval is empty, or the largest direction component is not
-/// within 2^-100 … 2^100 in magnitude.
+/// [`MAX_COORDINATE`](super::MAX_COORDINATE), the interval is empty, the largest direction component is not within
+/// 2^-100 … 2^100 in magnitude, or it sees nothing: its mask is 0.
 ///
 /// ```
 /// use hitscan::{Ray, glam::Vec3};
@@ -211,7 +211,7 @@ impl PreparedRay {
         // Finite limits spare every primitive the question whether its `t` overflowed; NaN stays what it is.
         let t_min = if ray.t_min < f32::MIN { f32::MIN } else { ray.t_min };
         let t_max = if ray.t_max > f32::MAX { f32::MAX } else { ray.t_max };
-        let valid = farthest <= magnitude(MAX_COORDINATE) && LARGEST.contains(&largest) && t_min <= t_max;
+        let valid = farthest <= magnitude(MAX_COORDINATE) && LARGEST.contains(&largest) && t_min <= t_max && ray.mask != 0;
         if !valid {
             return None;
         }
@@ -303,6 +303,7 @@ mod tests {
         assert!(good.up_to(f32::NAN).prepare().is_none());
         assert!(good.starting_at(2.0).up_to(1.0).prepare().is_none());
         assert!(good.starting_at(f32::INFINITY).prepare().is_none());
+        assert!(good.seeing(0).prepare().is_none());
         assert!(prepared([0.0; 3], 0.0).is_none());
         assert!(prepared([2.0e30, 0.0, 0.0], 0.0).is_none());
         assert!(prepared([7.0e-31, 0.0, 0.0], 0.0).is_none());
