@@ -1,4 +1,10 @@
-use crate::geometry::{Axis, AxisView, Lattice, PreparedRay};
+use glam::Vec3;
+
+use super::segment::Segment;
+use crate::{
+    geometry::{Aabb, Axis, AxisView, Lattice, PreparedRay, beyond, slack},
+    math::{greatest, least},
+};
 
 /// How the parameters of an axis' planes grow with their numbers, for planes where a ray enters and for those where it
 /// leaves.
@@ -27,6 +33,9 @@ impl Line {
 
 /// By which slopes are late and early, in parts of what [`reach`] says: see [`Slopes::new`].
 const ERROR: f32 = 2.0 / 16_777_216.0;
+
+/// What a slack is multiplied by for the roundings of sums with it, 1 + 2^-21.
+const LONGER: f32 = 1.0 + 1.0 / 2_097_152.0;
 
 /// Parameters up to here are far from overflow.
 const FAR: f32 = 1.0e36;
@@ -63,48 +72,39 @@ pub(crate) struct Slopes {
 }
 
 impl Slopes {
-    /// The planes of `lattice` as `ray` sees them; exits are late by `slack`.
+    /// The planes of `lattice` as `ray` sees them, and the part of the ray within the lattice; exits are late by `slack`.
     ///
-    /// Of planes that are `thickness` steps thick, a number names the face before, whichever way the ray comes. It is in the
-    /// bounds from `enter` to `exit`.
+    /// Of planes that are `thickness` steps thick, a number names the face before, whichever way the ray comes.
     #[inline(always)]
-    pub(crate) fn new(
-        ray: &PreparedRay,
-        lattice: &Lattice,
-        thickness: f32,
-        slack: f32,
-        (enter, exit): (f32, f32),
-    ) -> Self {
-        let late = slack * (1.0 + 8.0 / 16_777_216.0);
-        let along = |axis: Axis| Slope::along(axis, ray, lattice, thickness, late);
+    pub(crate) fn new(ray: &PreparedRay, lattice: &Lattice, thickness: f32) -> (Self, Option<Segment>) {
+        let slack = slack(ray.ray().t_min);
+        let along = |axis| Slope::along(axis, ray, lattice, thickness, slack);
         let ((x, a), (y, b), (z, c)) = (along(Axis::X), along(Axis::Y), along(Axis::Z));
-        let mut slopes = Self { axes: [x, y, z, z] };
         // NaN and infinity are not below.
-        if !(a + b + c < FAR) {
-            slopes.repair(ray, lattice, thickness, (enter, exit));
+        let (x, y, z) = if a + b + c < FAR {
+            (x, y, z)
+        } else {
+            let [x, y, z] = Slope::carefully(ray, lattice, thickness, slack);
+            (x, y, z)
+        };
+        let (mut enter, mut exit) = (ray.ray().t_min, beyond(ray.ray().t_max));
+        for (axis, slope) in Axis::ALL.into_iter().zip([x, y, z]) {
+            let last = lattice.last(axis) as i32 as f32 - thickness;
+            let (met_first, met_last) = if ray.views[axis as usize].ascends() {
+                (slope.entry.start, slope.exit.at(last))
+            } else {
+                (slope.entry.at(last), slope.exit.start)
+            };
+            enter = greatest(met_first, enter);
+            exit = least(met_last, exit);
         }
-        slopes
+        (Self { axes: [x, y, z, z] }, Segment::between(enter, exit))
     }
 
     /// Those of an axis by its number, of which two bits count.
     #[inline(always)]
     pub(crate) fn along(&self, axis: u32) -> &Slope {
         &self.axes[axis as usize & 3]
-    }
-
-    /// Slopes of axes along which the reciprocal is too large to calculate with.
-    #[cold]
-    #[inline(never)]
-    fn repair(&mut self, ray: &PreparedRay, lattice: &Lattice, thickness: f32, (enter, exit): (f32, f32)) {
-        let end = if enter.abs() > exit.abs() { enter.abs() } else { exit.abs() };
-        for (axis, slope) in Axis::ALL.into_iter().zip(&mut self.axes) {
-            let view = &ray.views[axis as usize];
-            let (first, step) = lattice.along(axis as u32);
-            let reach = reach(first, first - view.origin, lattice.extent(axis));
-            if !(reach * view.exit.abs() < FAR) {
-                *slope = Slope::steep(view, (first, step), thickness, reach, end);
-            }
-        }
     }
 }
 
@@ -113,9 +113,29 @@ impl Slope {
     const NONE: Self =
         Self { entry: Line { slope: 0.0, start: f32::NEG_INFINITY }, exit: Line { slope: 0.0, start: f32::INFINITY } };
 
+    /// Leaves nothing of a ray.
+    const NEVER: Self =
+        Self { entry: Line { slope: 0.0, start: f32::INFINITY }, exit: Line { slope: 0.0, start: f32::NEG_INFINITY } };
+
+    /// Those of all axes, where there are some along which the reciprocal is too large to calculate with.
+    #[cold]
+    #[inline(never)]
+    fn carefully(ray: &PreparedRay, lattice: &Lattice, thickness: f32, slack: f32) -> [Self; 3] {
+        let at = |axis, number| lattice.position(axis, number);
+        let min = Vec3::new(at(Axis::X, 0), at(Axis::Y, 0), at(Axis::Z, 0));
+        let last = |axis| at(axis, lattice.last(axis));
+        let max = Vec3::new(last(Axis::X), last(Axis::Y), last(Axis::Z));
+        let Some(whole) = Segment::whole(&Aabb::new(min, max), ray, slack) else { return [Self::NEVER; 3] };
+        let end = greatest(whole.enter.abs(), whole.exit.abs());
+        Axis::ALL.map(|axis| {
+            let (slope, largest) = Self::along(axis, ray, lattice, thickness, slack);
+            if largest < FAR { slope } else { Self::steep(axis, ray, lattice, thickness, end) }
+        })
+    }
+
     /// That of an axis, and the greatest of its parameters, about.
     #[inline(always)]
-    fn along(axis: Axis, ray: &PreparedRay, lattice: &Lattice, thickness: f32, late: f32) -> (Self, f32) {
+    fn along(axis: Axis, ray: &PreparedRay, lattice: &Lattice, thickness: f32, slack: f32) -> (Self, f32) {
         let view = &ray.views[axis as usize];
         let (first, step) = lattice.along(axis as u32);
         let begin = first - view.origin;
@@ -123,7 +143,7 @@ impl Slope {
         let error = largest * ERROR + f32::MIN_POSITIVE;
         let (enters, leaves) = faces(view, begin, step, thickness);
         let entry = Line { slope: step * view.entry, start: enters * view.entry - error };
-        let exit = Line { slope: step * view.exit, start: leaves * view.exit + (late + error) };
+        let exit = Line { slope: step * view.exit, start: leaves * view.exit + (slack * LONGER + error) };
         (Self { entry, exit }, largest)
     }
 
@@ -132,14 +152,17 @@ impl Slope {
     ///
     /// The sign of a distance in steps is what counts. It is off as a parameter is, and by `u` of `end`, which is less than
     /// half of what is allowed for a step.
-    fn steep(view: &AxisView, (first, step): (f32, f32), thickness: f32, reach: f32, end: f32) -> Self {
+    fn steep(axis: Axis, ray: &PreparedRay, lattice: &Lattice, thickness: f32, end: f32) -> Self {
+        let view = &ray.views[axis as usize];
         if view.entry.is_finite() || view.entry.is_nan() || !(end < LONG) {
             // A finite reciprocal that is too large, or too long a ray.
             return Self::NONE;
         }
+        let (first, step) = lattice.along(axis as u32);
+        let begin = first - view.origin;
         let slope = (end * STEEP).copysign(view.entry);
-        let error = reach / step * ERROR * slope.abs() + end;
-        let (enters, leaves) = faces(view, first - view.origin, step, thickness);
+        let error = reach(first, begin, lattice.extent(axis)) / step * ERROR * slope.abs() + end;
+        let (enters, leaves) = faces(view, begin, step, thickness);
         let entry = Line { slope, start: enters / step * slope - error };
         let exit = Line { slope, start: leaves / step * slope + error };
         Self { entry, exit }
@@ -171,15 +194,8 @@ fn faces(view: &AxisView, begin: f32, step: f32, thickness: f32) -> (f32, f32) {
 
 #[cfg(test)]
 mod tests {
-    use glam::Vec3;
-
     use super::*;
-    use crate::{
-        accel::segment::Segment,
-        geometry::{Aabb, Ray, slack},
-        math::{greatest, least},
-        testing::Random,
-    };
+    use crate::{geometry::Ray, testing::Random};
 
     /// How many planes cut a ray off, by their positions and by their numbers, in scenes of these sizes at these distances
     /// from the world's origin; nothing may be cut off that was not.
@@ -198,11 +214,12 @@ mod tests {
             let t_min = t_mins[random.below(t_mins.len() as u32) as usize];
             let Some(ray) = Ray::new(origin, direction).starting_at(t_min).prepare() else { continue };
             let (bounds, slack) = (Aabb::around([a, b]), slack(ray.ray().t_min));
-            let Some(Segment { enter, exit, .. }) = Segment::whole(&bounds, &ray, slack) else { continue };
             let last = [0xffff, 0x3fff, 1][random.below(3) as usize];
             let thickness = random.below(2);
             let lattice = Lattice::over(&bounds, [last; 3]);
-            let slopes = Slopes::new(&ray, &lattice, thickness as f32, slack, (enter, exit));
+            let (slopes, part) = Slopes::new(&ray, &lattice, thickness as f32);
+            let Some(Segment { enter, exit, .. }) = Segment::whole(&bounds, &ray, slack) else { continue };
+            assert!(part.is_some_and(|part| part.enter <= enter && exit <= part.exit), "{ray:?} {bounds:?} {part:?}");
             for axis in Axis::ALL {
                 let (view, slope) = (&ray.views[axis as usize], slopes.along(axis as u32));
                 for number in [0, last, random.below(last + 1), random.below(last + 1)] {

@@ -19,7 +19,7 @@ pub use axis::Axis;
 pub use bounding::{Bounding, BoundingVolume};
 pub use lattice::Lattice;
 pub use obb::Obb;
-pub(crate) use ray::{AxisView, beyond, slack};
+pub(crate) use ray::{AxisView, beyond, descends, slack};
 pub use ray::{PreparedRay, Ray};
 pub use sphere::Sphere;
 pub use transform::{Singular, Transform};

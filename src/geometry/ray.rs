@@ -211,7 +211,8 @@ impl PreparedRay {
         // Finite limits spare every primitive the question whether its `t` overflowed; NaN stays what it is.
         let t_min = if ray.t_min < f32::MIN { f32::MIN } else { ray.t_min };
         let t_max = if ray.t_max > f32::MAX { f32::MAX } else { ray.t_max };
-        let valid = farthest <= magnitude(MAX_COORDINATE) && LARGEST.contains(&largest) && t_min <= t_max && ray.mask != 0;
+        let valid =
+            farthest <= magnitude(MAX_COORDINATE) && LARGEST.contains(&largest) && t_min <= t_max && ray.mask != 0;
         if !valid {
             return None;
         }
@@ -273,6 +274,17 @@ impl PreparedRay {
 #[inline(always)]
 pub(crate) fn beyond(t: f32) -> f32 {
     t + t.abs() * (4.0 * WIDENING) + 4.0 * TINY
+}
+
+/// Whether a ray meets higher coordinates first along the axis whose number is in the lowest two bits of `word`.
+///
+/// `mask` is [`PreparedRay::descending`], which repeats so that the other bits of the word do not matter: shorter than to find
+/// the axis and look at its direction.
+#[inline(always)]
+pub(crate) const fn descends(mask: u32, word: u32) -> bool {
+    // Arm turns by a register's lowest five bits, x86 tests the bit that they number.
+    let mask = if cfg!(target_arch = "arm") { mask.rotate_right(word) } else { mask >> (word & 31) };
+    mask & 1 != 0
 }
 
 /// What a traversal that starts at `t` adds to its exits: where they are negative, it makes up for the factor in them.

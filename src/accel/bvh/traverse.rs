@@ -3,8 +3,8 @@ use super::{
     node::{Link, Node, Pair},
 };
 use crate::{
-    accel::{Leaf, Step, Traversal, leaf::References, segment::Segment, slope::Slopes},
-    geometry::{Axis, PreparedRay, beyond, slack},
+    accel::{Leaf, Step, Traversal, leaf::References, slope::Slopes},
+    geometry::{Axis, PreparedRay, beyond},
     math::{greatest, least},
 };
 
@@ -45,19 +45,12 @@ fn interval(node: &Node, slopes: &Slopes, descending: u32, mut enter: f32, mut e
 impl<'a> BvhTraversal<'a> {
     #[inline]
     pub(super) fn new(bvh: &Bvh<'a>, ray: &PreparedRay) -> Self {
-        let slack = slack(ray.ray().t_min);
-        let whole = Segment::whole(&bvh.bounds, ray, slack);
+        let (slopes, whole) = Slopes::new(ray, &bvh.lattice, 0.0);
         // The stack is not filled here, so that it is made where it stays: moving it would cost more than many pairs.
         Self {
             pairs: bvh.pairs,
             references: bvh.references,
-            slopes: Slopes::new(
-                ray,
-                &bvh.lattice,
-                0.0,
-                slack,
-                whole.map_or((0.0, 0.0), |whole| (whole.enter, whole.exit)),
-            ),
+            slopes,
             next: whole.map(|whole| Cell { link: bvh.root, enter: whole.enter }),
             stack: heapless::Vec::new(),
         }

@@ -6,7 +6,7 @@ use crate::{
         segment::{Segment, Waiting},
         slope::Slopes,
     },
-    geometry::{PreparedRay, beyond, slack},
+    geometry::{PreparedRay, beyond},
     math::{greatest, least},
 };
 
@@ -25,21 +25,8 @@ pub struct DualSplitTraversal<'a> {
 impl<'a> DualSplitTraversal<'a> {
     #[inline]
     pub(super) fn new(tree: &DualSplit<'a>, ray: &PreparedRay) -> Self {
-        let slack = slack(ray.ray().t_min);
-        let next = Segment::whole(&tree.bounds, ray, slack);
-        Self {
-            nodes: tree.nodes,
-            references: tree.references,
-            slopes: Slopes::new(
-                ray,
-                &tree.lattice,
-                0.0,
-                slack,
-                next.map_or((0.0, 0.0), |whole| (whole.enter, whole.exit)),
-            ),
-            next,
-            waiting: Waiting::new(),
-        }
+        let (slopes, next) = Slopes::new(ray, &tree.lattice, 0.0);
+        Self { nodes: tree.nodes, references: tree.references, slopes, next, waiting: Waiting::new() }
     }
 
     /// The nearest segment that begins before `end`, up to there: boxes in it may begin behind.

@@ -7,7 +7,7 @@ use crate::{
         segment::{Segment, Waiting},
         slope::Slopes,
     },
-    geometry::{PreparedRay, beyond, slack},
+    geometry::{PreparedRay, beyond},
     math::{greatest, least},
 };
 
@@ -27,21 +27,8 @@ pub struct CompactKdTraversal<'a> {
 impl<'a> CompactKdTraversal<'a> {
     #[inline]
     pub(super) fn new(tree: &CompactKdTree<'a>, ray: &PreparedRay) -> Self {
-        let slack = slack(ray.ray().t_min);
-        let next = Segment::whole(&tree.bounds, ray, slack);
-        Self {
-            nodes: tree.nodes,
-            references: tree.references,
-            slopes: Slopes::new(
-                ray,
-                &tree.lattice,
-                1.0,
-                slack,
-                next.map_or((0.0, 0.0), |whole| (whole.enter, whole.exit)),
-            ),
-            next,
-            waiting: Waiting::new(),
-        }
+        let (slopes, next) = Slopes::new(ray, &tree.lattice, 1.0);
+        Self { nodes: tree.nodes, references: tree.references, slopes, next, waiting: Waiting::new() }
     }
 
     /// The primitives of the leaf at `index`.
