@@ -220,12 +220,11 @@ impl PreparedRay {
         let x = AxisView::new(o.x, d.x, forward);
         let y = AxisView::new(o.y, d.y, forward);
         let z = AxisView::new(o.z, d.z, forward);
-        let (origin, [first, second], inverse) = match major {
-            Axis::X => ([o.y, o.z, o.x], [d.y, d.z], x.entry),
-            Axis::Y => ([o.z, o.x, o.y], [d.z, d.x], y.entry),
-            Axis::Z => ([o.x, o.y, o.z], [d.x, d.y], z.entry),
+        let (origin, slope, inverse) = match major {
+            Axis::X => ([o.y, o.z, o.x], [d.y * x.entry, d.z * x.entry], x.entry),
+            Axis::Y => ([o.z, o.x, o.y], [d.z * y.entry, d.x * y.entry], y.entry),
+            Axis::Z => ([o.x, o.y, o.z], [d.x * z.entry, d.y * z.entry], z.entry),
         };
-        let slope = [first * inverse, second * inverse];
         let error = greatest(slope[0].abs(), slope[1].abs()) * SHEARED + FLAT;
         let shear = Shear { major, origin, slope, inverse, error };
         let bit = |view: &AxisView, axis: Axis| view.entry.to_bits() >> 31 << axis as u32;
