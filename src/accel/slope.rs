@@ -67,8 +67,7 @@ fn reach(first: f32, begin: f32, extent: f32) -> f32 {
 /// `2^-126`: a step is no denormal, and `2^-150` in its product with `r` counts up to `2^20` times.
 #[derive(Clone, Debug)]
 pub(crate) struct Slopes {
-    /// By axis; the fourth is there so that an index of two bits needs no check.
-    axes: [Slope; 4],
+    axes: [Slope; 3],
 }
 
 impl Slopes {
@@ -98,13 +97,19 @@ impl Slopes {
             enter = greatest(met_first, enter);
             exit = least(met_last, exit);
         }
-        (Self { axes: [x, y, z, z] }, Segment::between(enter, exit))
+        (Self { axes: [x, y, z] }, Segment::between(enter, exit))
     }
 
-    /// Those of an axis by its number, of which two bits count.
+    /// That of an axis.
     #[inline(always)]
-    pub(crate) fn along(&self, axis: u32) -> &Slope {
-        &self.axes[axis as usize & 3]
+    pub(crate) fn of(&self, axis: Axis) -> &Slope {
+        &self.axes[axis as usize]
+    }
+
+    /// That of the axis of this number, if there is one.
+    #[inline(always)]
+    pub(crate) fn along(&self, axis: u32) -> Option<&Slope> {
+        self.axes.get(axis as usize)
     }
 }
 
@@ -221,7 +226,7 @@ mod tests {
             let Some(Segment { enter, exit, .. }) = Segment::whole(&bounds, &ray, slack) else { continue };
             assert!(part.is_some_and(|part| part.enter <= enter && exit <= part.exit), "{ray:?} {bounds:?} {part:?}");
             for axis in Axis::ALL {
-                let (view, slope) = (&ray.views[axis as usize], slopes.along(axis as u32));
+                let (view, slope) = (&ray.views[axis as usize], slopes.of(axis));
                 for number in [0, last, random.below(last + 1), random.below(last + 1)] {
                     let (enters, leaves) =
                         if view.ascends() { (number, number + thickness) } else { (number + thickness, number) };

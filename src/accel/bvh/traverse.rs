@@ -32,7 +32,7 @@ struct Cell {
 #[inline(always)]
 fn interval(node: &Node, slopes: &Slopes, descending: u32, mut enter: f32, mut exit: f32) -> (f32, f32) {
     for axis in Axis::ALL {
-        let slope = slopes.along(axis as u32);
+        let slope = slopes.of(axis);
         // The planes change places where the ray descends.
         let turn = (descending >> axis as u32 & 1) * 16;
         let planes = node.planes.of(axis).rotate_right(turn);

@@ -50,17 +50,16 @@ impl<'a> DualSplitTraversal<'a> {
             }
             let Some(&word) = nodes.get(cell.node as usize) else { return Step::Done };
             let head = Head::from_word(word);
-            let axis = head.axis_or_leaf();
-            if axis == Head::LEAF {
+            let Some(slope) = self.slopes.along(head.axis_or_leaf()) else {
                 return Step::Leaf(Leaf::of(self.references, head.first(), head.count()));
-            }
+            };
             let Some(&planes) = nodes.get(cell.node as usize + 1) else { return Step::Done };
             // Comparisons are written so that NaN, the ray in a plane, visits.
             let child = cell.node + 2;
             if head.is_carve() {
                 cell.node = child;
                 for (head, plane) in [(head, planes & 0xffff), (head.turned(), planes >> 16)] {
-                    let slope = self.slopes.along(head.axis_or_leaf());
+                    let Some(slope) = self.slopes.along(head.axis_or_leaf()) else { return Step::Done };
                     if head.is_upper() == head.is_descended(ray.descending) {
                         cell.enter = greatest(slope.entry(plane), cell.enter);
                     } else {
@@ -82,7 +81,6 @@ impl<'a> DualSplitTraversal<'a> {
             let descended = head.is_descended(ray.descending);
             let (planes, near, far) =
                 if descended { (planes.rotate_left(16), head.right(), child) } else { (planes, child, head.right()) };
-            let slope = self.slopes.along(axis);
             let exit = slope.exit(planes & 0xffff);
             if exit < cell.enter {
                 // The far child: as nearly all rays that miss the near one meet it, its plane need not be looked at.

@@ -62,8 +62,7 @@ impl<'a> CompactKdTraversal<'a> {
             }
             let Some(&word) = nodes.get(cell.node as usize) else { return Step::Done };
             let node = Node::from_word(word);
-            let axis = node.axis_or_leaf();
-            if axis == Node::LEAF {
+            let Some(slope) = self.slopes.along(node.axis_or_leaf()) else {
                 if node.count() != 0 {
                     return Step::Leaf(self.leaf(node, cell.node));
                 }
@@ -72,9 +71,8 @@ impl<'a> CompactKdTraversal<'a> {
                     None => return Step::Done,
                 }
                 continue;
-            }
+            };
             // The child on the ray's side first.
-            let slope = self.slopes.along(axis);
             let descended = node.is_descended(ray.descending);
             // The far child begins at one face of a plane that is a step thick, the near one ends at the other.
             let (entry, exit) = (slope.entry(node.plane()), slope.exit(node.plane()));
