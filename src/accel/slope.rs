@@ -10,7 +10,8 @@ use crate::{
 /// leaves.
 ///
 /// A conversion, a product and a sum in the place of twice as many steps. These are not the bits that the plane's position
-/// gives, but an entry is never later than that gives it and an exit never earlier, so a walk visits all that it would.
+/// gives, but an entry is never later than by position and an exit never earlier: wherever the part of a ray that counts
+/// is on one side of a plane by the one, it is by the other (ARCHITECTURE.md, the proof, 3).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Slope {
     entry: Line,
@@ -31,7 +32,7 @@ impl Line {
     }
 }
 
-/// By which slopes are late and early, in parts of what [`reach`] says: see [`Slopes::new`].
+/// By which slopes are late and early, in parts of what [`reach`] says: see [`Slopes`].
 const ERROR: f32 = 2.0 / 16_777_216.0;
 
 /// What a slack is multiplied by for the roundings of sums with it, 1 + 2^-21.
@@ -52,19 +53,19 @@ const LONG: f32 = 1.152_921_5e18;
 /// A position is rounded relative to coordinates, all else relative to distances from the origin.
 #[inline(always)]
 fn reach(first: f32, begin: f32, extent: f32) -> f32 {
-    first.abs() + (begin.abs() + extent) * 6.0
+    first.abs() + (begin.abs() + extent) * 8.0
 }
 
 /// The slopes of all axes.
 ///
 /// *The error.* Let `o` be the origin, `r` the reciprocal, `f`, `h` and `l` the first plane, the step and the extent,
-/// `g = |f - o| + l`, `u = 2^-24`. What the position gives, `fl(fl(fl(f + fl(k h)) - o) r) + s`, is off by at most `u l` for
-/// the product, `u (|f| + l)` for the position, and `u g` each for the difference, the product with `r` and the sum with
-/// `s`: `u (|f| + 5 g)` times `|r|`. The slope is off by `3 u |f - o|` for the difference, the step added to it and the product,
-/// `2 u l` for `h r` and its product with `k`, and `2 u g` for both sums: `u 5 g`. Of the sum of both,
-/// `u (|f| + 10 g)` and terms in `u²`, [`ERROR`] times [`reach`] is `u (2 |f| + 12 g)`. Sums with `s` and with the error
-/// itself take up to `5 u s` more, for which `s` is lengthened by `8 u`, and a share of the rest. Underflow takes less than
-/// `2^-126`: a step is no denormal, and `2^-150` in its product with `r` counts up to `2^20` times.
+/// `g = |f - o| + l`, `u = 2^-24`; all that follows times `u |r|`. What the position gives,
+/// `fl(fl(fl(fl(f + fl(k h)) - o) r) + s)`, is off by `l` for the first product, `|f| + l` for the position, and `g` each for the
+/// difference, the product with `r` and the sum with `s`: less than `|f| + 5 g`. The line is off by `g` each for the
+/// difference `f - o`, a step added to it, its product with `r` and two sums, and by `l` each for `h r` and its product with `k`:
+/// less than `7 g`. [`ERROR`] times [`reach`] is `2 |f| + 16 g`, which leaves room for terms in `u²`. Sums with `s` take up to
+/// `4 u s` more, for which `s` is lengthened by `8 u`. Underflow takes less than `2^-126`: a step is no denormal, and `2^-150` in
+/// its product with `r` counts up to `2^20` times.
 #[derive(Clone, Debug)]
 pub(crate) struct Slopes {
     axes: [Slope; 3],
@@ -155,8 +156,8 @@ impl Slope {
     /// Where the direction is 0: planes before the origin are far before the ray's part in the bounds, which ends by `end`,
     /// those behind it far behind that.
     ///
-    /// The sign of a distance in steps is what counts. It is off as a parameter is, and by `u` of `end`, which is less than
-    /// half of what is allowed for a step.
+    /// The sign of a distance in steps is what counts. It is off as a parameter is, `|f| + 13 g` in place of `|f| + 12 g`, and
+    /// by `3 u` of `end`, a thousandth of what is left of the error allowed for a step.
     fn steep(axis: Axis, ray: &PreparedRay, lattice: &Lattice, thickness: f32, end: f32) -> Self {
         let view = &ray.views[axis as usize];
         if view.entry.is_finite() || view.entry.is_nan() || !(end < LONG) {
