@@ -205,7 +205,9 @@ impl<A: Accelerator, P: Primitives> Scene<A, P> {
 
     #[inline(always)]
     fn intersect(&self, index: u32, ray: &PreparedRay, span: Span) -> Option<Hit> {
-        if self.primitives.mask(index) & ray.ray().mask == 0 {
+        // Compared first: where there are no masks, nothing is left of this.
+        let mask = self.primitives.mask(index);
+        if mask != u32::MAX && mask & ray.ray().mask == 0 {
             return None;
         }
         let span =

@@ -17,6 +17,7 @@ mod malformed;
 pub mod octree;
 mod on_lattice;
 mod segment;
+mod slope;
 mod sort;
 mod structure;
 

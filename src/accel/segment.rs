@@ -24,6 +24,12 @@ impl Segment {
             enter = greatest((near - view.origin) * view.entry, enter);
             exit = least((far - view.origin) * view.exit + slack, exit);
         }
+        Self::between(enter, exit)
+    }
+
+    /// From `enter` to `exit`, for the first node; none if it ends before it begins.
+    #[inline(always)]
+    pub(crate) fn between(enter: f32, exit: f32) -> Option<Self> {
         if enter > exit { None } else { Some(Self { node: 0, enter, exit }) }
     }
 

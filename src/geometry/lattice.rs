@@ -57,6 +57,12 @@ impl Lattice {
         self.plane(axis as u32, number)
     }
 
+    /// From the first plane of an axis to the last.
+    #[inline(always)]
+    pub(crate) fn extent(&self, axis: Axis) -> f32 {
+        self.last(axis) as i32 as f32 * self.step[axis as usize]
+    }
+
     /// The first plane of an axis and the distance between planes, by the number of the axis, of which two bits count.
     #[inline(always)]
     pub(crate) fn along(&self, axis: u32) -> (f32, f32) {

@@ -22,7 +22,7 @@ pub use lattice::Lattice;
 pub use obb::Obb;
 pub(crate) use on_lattice::Depth;
 pub use on_lattice::{LatticeRay, LatticeRays, LatticeSpace};
-pub(crate) use ray::{AxisView, beyond, slack};
+pub(crate) use ray::{AxisView, beyond, descends, slack};
 pub use ray::{PreparedRay, Ray};
 pub use sphere::Sphere;
 pub use transform::{Singular, Transform};

@@ -34,8 +34,8 @@ pub(crate) const LIFT: f32 = 18_446_744_073_709_551_616.0;
 /// A point on it is `origin + t * direction`; the direction need not have unit length.
 ///
 /// A ray is *invalid* and misses everything if a component is not finite, an origin coordinate exceeds
-/// [`MAX_COORDINATE`](super::MAX_COORDINATE), the interval is empty, or the largest direction component is not
-/// within 2^-100 … 2^100 in magnitude.
+/// [`MAX_COORDINATE`](super::MAX_COORDINATE), the interval is empty, the largest direction component is not within
+/// 2^-100 … 2^100 in magnitude, or it sees nothing: its mask is 0.
 ///
 /// ```
 /// use hitscan::{Ray, glam::Vec3};
@@ -211,7 +211,8 @@ impl PreparedRay {
         // Finite limits spare every primitive the question whether its `t` overflowed; NaN stays what it is.
         let t_min = if ray.t_min < f32::MIN { f32::MIN } else { ray.t_min };
         let t_max = if ray.t_max > f32::MAX { f32::MAX } else { ray.t_max };
-        let valid = farthest <= magnitude(MAX_COORDINATE) && LARGEST.contains(&largest) && t_min <= t_max;
+        let valid =
+            farthest <= magnitude(MAX_COORDINATE) && LARGEST.contains(&largest) && t_min <= t_max && ray.mask != 0;
         if !valid {
             return None;
         }
@@ -219,12 +220,11 @@ impl PreparedRay {
         let x = AxisView::new(o.x, d.x, forward);
         let y = AxisView::new(o.y, d.y, forward);
         let z = AxisView::new(o.z, d.z, forward);
-        let (origin, [first, second], inverse) = match major {
-            Axis::X => ([o.y, o.z, o.x], [d.y, d.z], x.entry),
-            Axis::Y => ([o.z, o.x, o.y], [d.z, d.x], y.entry),
-            Axis::Z => ([o.x, o.y, o.z], [d.x, d.y], z.entry),
+        let (origin, slope, inverse) = match major {
+            Axis::X => ([o.y, o.z, o.x], [d.y * x.entry, d.z * x.entry], x.entry),
+            Axis::Y => ([o.z, o.x, o.y], [d.z * y.entry, d.x * y.entry], y.entry),
+            Axis::Z => ([o.x, o.y, o.z], [d.x * z.entry, d.y * z.entry], z.entry),
         };
-        let slope = [first * inverse, second * inverse];
         let error = greatest(slope[0].abs(), slope[1].abs()) * SHEARED + FLAT;
         let shear = Shear { major, origin, slope, inverse, error };
         let bit = |view: &AxisView, axis: Axis| view.entry.to_bits() >> 31 << axis as u32;
@@ -275,6 +275,17 @@ pub(crate) fn beyond(t: f32) -> f32 {
     t + t.abs() * (4.0 * WIDENING) + 4.0 * TINY
 }
 
+/// Whether a ray meets higher coordinates first along the axis whose number is in the lowest two bits of `word`.
+///
+/// `mask` is [`PreparedRay::descending`], which repeats so that the other bits of the word do not matter: shorter than to find
+/// the axis and look at its direction.
+#[inline(always)]
+pub(crate) const fn descends(mask: u32, word: u32) -> bool {
+    // Arm turns by a register's lowest five bits, x86 tests the bit that they number.
+    let mask = if cfg!(target_arch = "arm") { mask.rotate_right(word) } else { mask >> (word & 31) };
+    mask & 1 != 0
+}
+
 /// What a traversal that starts at `t` adds to its exits: where they are negative, it makes up for the factor in them.
 ///
 /// Twice what [`PreparedRay::exit`] takes off, so that no exit of a cell lies before that of a box in it.
@@ -303,6 +314,7 @@ mod tests {
         assert!(good.up_to(f32::NAN).prepare().is_none());
         assert!(good.starting_at(2.0).up_to(1.0).prepare().is_none());
         assert!(good.starting_at(f32::INFINITY).prepare().is_none());
+        assert!(good.seeing(0).prepare().is_none());
         assert!(prepared([0.0; 3], 0.0).is_none());
         assert!(prepared([2.0e30, 0.0, 0.0], 0.0).is_none());
         assert!(prepared([7.0e-31, 0.0, 0.0], 0.0).is_none());

@@ -3,8 +3,8 @@ use super::{
     node::{Link, Node, Pair},
 };
 use crate::{
-    accel::{Leaf, Step, Traversal, leaf::References},
-    geometry::{Axis, Lattice, PreparedRay, beyond, slack},
+    accel::{Leaf, Step, Traversal, leaf::References, slope::Slopes},
+    geometry::{Axis, PreparedRay, beyond},
     math::{greatest, least},
 };
 
@@ -13,8 +13,7 @@ use crate::{
 pub struct BvhTraversal<'a> {
     pairs: &'a [Pair],
     references: References<'a>,
-    lattice: Lattice,
-    slack: f32,
+    slopes: Slopes,
     /// The box to go on with: the whole at first, after a pause the one before which it was; none behind a leaf.
     next: Option<Cell>,
     /// Boxes entered later than their siblings, those of the deepest pair on top.
@@ -28,52 +27,33 @@ struct Cell {
     enter: f32,
 }
 
-/// A ray among the planes of a lattice.
-#[derive(Clone, Copy)]
-struct Slabs<'r> {
-    ray: &'r PreparedRay,
-    lattice: &'r Lattice,
-    slack: f32,
-}
-
-impl Slabs<'_> {
-    /// Where the ray enters a box behind `enter`, and where it leaves that before `exit`: the slab test, NaN being no
-    /// bound.
-    #[inline(always)]
-    fn interval(&self, node: &Node, mut enter: f32, mut exit: f32) -> (f32, f32) {
-        for axis in Axis::ALL {
-            let view = &self.ray.views[axis as usize];
-            // The planes change places where the ray descends.
-            let turn = (self.ray.descending >> axis as u32 & 1) * 16;
-            let planes = node.planes.of(axis).rotate_right(turn);
-            let near = self.lattice.position(axis, planes & 0xffff);
-            let far = self.lattice.position(axis, planes >> 16);
-            enter = greatest((near - view.origin) * view.entry, enter);
-            exit = least((far - view.origin) * view.exit + self.slack, exit);
-        }
-        (enter, exit)
+/// Where a ray that descends along the axes of `descending` enters a box behind `enter`, and where it leaves that before
+/// `exit`: the slab test, NaN being no bound.
+#[inline(always)]
+fn interval(node: &Node, slopes: &Slopes, descending: u32, mut enter: f32, mut exit: f32) -> (f32, f32) {
+    for axis in Axis::ALL {
+        let slope = slopes.of(axis);
+        // The planes change places where the ray descends.
+        let turn = (descending >> axis as u32 & 1) * 16;
+        let planes = node.planes.of(axis).rotate_right(turn);
+        enter = greatest(slope.entry(planes & 0xffff), enter);
+        exit = least(slope.exit(planes >> 16), exit);
     }
+    (enter, exit)
 }
 
 impl<'a> BvhTraversal<'a> {
     #[inline]
     pub(super) fn new(bvh: &Bvh<'a>, ray: &PreparedRay) -> Self {
-        // Not filled here, so that it is made where it stays: moving the stack would cost more than many pairs.
-        let mut traversal = Self {
+        let (slopes, whole) = Slopes::new(ray, &bvh.lattice, 0.0);
+        // The stack is not filled here, so that it is made where it stays: moving it would cost more than many pairs.
+        Self {
             pairs: bvh.pairs,
             references: bvh.references,
-            lattice: bvh.lattice,
-            slack: 0.0,
-            next: None,
+            slopes,
+            next: whole.map(|whole| Cell { link: bvh.root, enter: whole.enter }),
             stack: heapless::Vec::new(),
-        };
-        if let Some((enter, exit)) = bvh.bounds.interval(ray) {
-            let enter = greatest(enter, ray.ray().t_min);
-            let exit = least(exit, beyond(ray.ray().t_max));
-            traversal.slack = slack(enter);
-            traversal.next = if enter > exit { None } else { Some(Cell { link: bvh.root, enter }) };
         }
-        traversal
     }
 
     /// The box on top that begins before `end`.
@@ -89,8 +69,7 @@ impl<'a> BvhTraversal<'a> {
 
     #[inline(always)]
     fn advance<const BOUNDED: bool>(&mut self, ray: &PreparedRay, t_max: f32, budget: &mut u32) -> Step<Leaf<'a>> {
-        let (pairs, end, lattice) = (self.pairs, beyond(t_max), self.lattice);
-        let slabs = Slabs { ray, lattice: &lattice, slack: self.slack };
+        let (pairs, end, descending) = (self.pairs, beyond(t_max), ray.descending);
         let Some(mut cell) = self.next.take().or_else(|| self.pop(end)) else { return Step::Done };
         while !cell.link.is_leaf() {
             if BOUNDED {
@@ -101,8 +80,8 @@ impl<'a> BvhTraversal<'a> {
                 *budget -= 1;
             }
             let Some([left, right]) = pairs.get(cell.link.number() as usize) else { return Step::Done };
-            let (left_enter, left_exit) = slabs.interval(left, cell.enter, end);
-            let (right_enter, right_exit) = slabs.interval(right, cell.enter, end);
+            let (left_enter, left_exit) = interval(left, &self.slopes, descending, cell.enter, end);
+            let (right_enter, right_exit) = interval(right, &self.slopes, descending, cell.enter, end);
             let left_cell = Cell { link: left.link, enter: left_enter };
             let right_cell = Cell { link: right.link, enter: right_enter };
             // Written so that NaN visits.

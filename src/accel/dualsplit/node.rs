@@ -1,5 +1,5 @@
 use super::block::Face;
-use crate::geometry::Axis;
+use crate::geometry::{Axis, descends};
 
 /// The first word of a node.
 ///
@@ -107,10 +107,10 @@ impl Head {
         self.0 & CARVE != 0
     }
 
-    /// Whether a ray meets higher coordinates first; `mask` repeats, every four bits, one bit per axis.
+    /// Whether a ray that descends along the axes of `mask` meets higher coordinates first.
     #[inline(always)]
     pub(super) const fn is_descended(self, mask: u32) -> bool {
-        mask >> (self.0 & 31) & 1 != 0
+        descends(mask, self.0)
     }
 
     /// Whether the first face is an upper one.

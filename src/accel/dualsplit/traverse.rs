@@ -4,8 +4,9 @@ use crate::{
         Leaf, Step, Traversal,
         leaf::References,
         segment::{Segment, Waiting},
+        slope::Slopes,
     },
-    geometry::{Lattice, PreparedRay, beyond, slack},
+    geometry::{PreparedRay, beyond},
     math::{greatest, least},
 };
 
@@ -14,8 +15,7 @@ use crate::{
 pub struct DualSplitTraversal<'a> {
     nodes: &'a [u32],
     references: References<'a>,
-    lattice: Lattice,
-    slack: f32,
+    slopes: Slopes,
     /// The cell to go on with: the whole at first, after a pause the one before which it was; none behind a leaf.
     next: Option<Segment>,
     /// Far children, the nearest on top.
@@ -25,15 +25,8 @@ pub struct DualSplitTraversal<'a> {
 impl<'a> DualSplitTraversal<'a> {
     #[inline]
     pub(super) fn new(tree: &DualSplit<'a>, ray: &PreparedRay) -> Self {
-        let slack = slack(ray.ray().t_min);
-        Self {
-            nodes: tree.nodes,
-            references: tree.references,
-            lattice: tree.lattice,
-            slack,
-            next: Segment::whole(&tree.bounds, ray, slack),
-            waiting: Waiting::new(),
-        }
+        let (slopes, next) = Slopes::new(ray, &tree.lattice, 0.0);
+        Self { nodes: tree.nodes, references: tree.references, slopes, next, waiting: Waiting::new() }
     }
 
     /// The nearest segment that begins before `end`, up to there: boxes in it may begin behind.
@@ -44,7 +37,7 @@ impl<'a> DualSplitTraversal<'a> {
 
     #[inline(always)]
     fn advance<const BOUNDED: bool>(&mut self, ray: &PreparedRay, t_max: f32, budget: &mut u32) -> Step<Leaf<'a>> {
-        let (nodes, slack, end) = (self.nodes, self.slack, beyond(t_max));
+        let (nodes, end) = (self.nodes, beyond(t_max));
         // The cell at hand is in registers, not in `self`: that is a third of the instructions.
         let Some(mut cell) = self.next.take().or_else(|| self.pop(end)) else { return Step::Done };
         loop {
@@ -57,23 +50,20 @@ impl<'a> DualSplitTraversal<'a> {
             }
             let Some(&word) = nodes.get(cell.node as usize) else { return Step::Done };
             let head = Head::from_word(word);
-            let axis = head.axis_or_leaf();
-            if axis == Head::LEAF {
+            let Some(slope) = self.slopes.along(head.axis_or_leaf()) else {
                 return Step::Leaf(Leaf::of(self.references, head.first(), head.count()));
-            }
+            };
             let Some(&planes) = nodes.get(cell.node as usize + 1) else { return Step::Done };
             // Comparisons are written so that NaN, the ray in a plane, visits.
             let child = cell.node + 2;
             if head.is_carve() {
                 cell.node = child;
                 for (head, plane) in [(head, planes & 0xffff), (head.turned(), planes >> 16)] {
-                    let axis = head.axis_or_leaf();
-                    let view = &ray.views[axis as usize];
-                    let distance = self.lattice.plane(axis, plane) - view.origin;
+                    let Some(slope) = self.slopes.along(head.axis_or_leaf()) else { return Step::Done };
                     if head.is_upper() == head.is_descended(ray.descending) {
-                        cell.enter = greatest(distance * view.entry, cell.enter);
+                        cell.enter = greatest(slope.entry(plane), cell.enter);
                     } else {
-                        cell.exit = least(distance * view.exit + slack, cell.exit);
+                        cell.exit = least(slope.exit(plane), cell.exit);
                     }
                     if cell.enter > cell.exit {
                         break;
@@ -91,14 +81,13 @@ impl<'a> DualSplitTraversal<'a> {
             let descended = head.is_descended(ray.descending);
             let (planes, near, far) =
                 if descended { (planes.rotate_left(16), head.right(), child) } else { (planes, child, head.right()) };
-            let view = &ray.views[axis as usize];
-            let exit = (self.lattice.plane(axis, planes & 0xffff) - view.origin) * view.exit + slack;
+            let exit = slope.exit(planes & 0xffff);
             if exit < cell.enter {
                 // The far child: as nearly all rays that miss the near one meet it, its plane need not be looked at.
                 cell.node = far;
                 continue;
             }
-            let entry = (self.lattice.plane(axis, planes >> 16) - view.origin) * view.entry;
+            let entry = slope.entry(planes >> 16);
             if !(entry > cell.exit) {
                 self.waiting.push(Segment { node: far, enter: greatest(entry, cell.enter), exit: cell.exit });
             }

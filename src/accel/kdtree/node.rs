@@ -1,4 +1,4 @@
-use crate::geometry::Axis;
+use crate::geometry::{Axis, descends};
 
 /// A node of 8 bytes, after Pharr, Jakob and Humphreys, *Physically Based Rendering*, §4.4.
 ///
@@ -83,14 +83,10 @@ impl Node {
         self.link & 3
     }
 
-    /// Whether a ray meets the right child first; `mask` repeats, every four bits, one bit per axis.
-    ///
-    /// A shift by the link itself: shorter than to find the axis and look at its direction.
+    /// Whether a ray that descends along the axes of `mask` meets the right child first.
     #[inline(always)]
     pub(crate) const fn is_descended(self, mask: u32) -> bool {
-        // Arm turns by a register's lowest five bits, x86 tests the bit that they number.
-        let mask = if cfg!(target_arch = "arm") { mask.rotate_right(self.link) } else { mask >> (self.link & 31) };
-        mask & 1 != 0
+        descends(mask, self.link)
     }
 
     /// The number of an inner node's right child, or of a leaf's primitives.

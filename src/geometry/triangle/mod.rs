@@ -152,8 +152,9 @@ impl Triangle {
     /// An `f32` estimate for shading and texture coordinates; deterministic like everything else.
     #[must_use]
     pub fn weights(&self, ray: &PreparedRay) -> (f32, f32) {
-        let [u, v, w] =
-            filter::edges(&filter::shear([self.a.as_ref(), self.b.as_ref(), self.c.as_ref()], ray)).map(f32::abs);
+        let corners = [self.a.as_ref(), self.b.as_ref(), self.c.as_ref()];
+        let sheared = filter::shear(corners, ray, |_, _| false);
+        let [u, v, w] = sheared.map_or([0.0; 3], |sheared| filter::edges(&sheared).map(f32::abs));
         let sum = u + v + w;
         if sum > 0.0 && sum.is_finite() { (v / sum, w / sum) } else { (1.0 / 3.0, 1.0 / 3.0) }
     }

@@ -7,7 +7,7 @@ use crate::{
         },
         leaf::References,
     },
-    geometry::Axis,
+    geometry::{Axis, descends},
 };
 
 /// A node of 4 bytes, and in rare cases a word or two behind it.
@@ -99,7 +99,8 @@ impl Node {
     /// Whether it is the right side of a cut that is empty.
     #[inline(always)]
     pub(crate) const fn is_empty_on_the_right(self) -> bool {
-        self.link() == 0
+        // The link of a cut is 0 or 1.
+        self.0 >> 16 & 1 == 0
     }
 
     /// Whether the distance to the right child stands in the next word.
@@ -108,10 +109,10 @@ impl Node {
         self.link() == LONG
     }
 
-    /// Whether a ray meets the right child first; `mask` repeats, every four bits, one bit per axis.
+    /// Whether a ray that descends along the axes of `mask` meets the right child first.
     #[inline(always)]
     pub(crate) const fn is_descended(self, mask: u32) -> bool {
-        mask >> self.axis_or_leaf() & 1 != 0
+        descends(mask, self.0)
     }
 
     /// A leaf's first reference, or its only primitive.

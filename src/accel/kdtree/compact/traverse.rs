@@ -5,8 +5,9 @@ use crate::{
         kdtree::MAX_DEPTH,
         leaf::References,
         segment::{Segment, Waiting},
+        slope::Slopes,
     },
-    geometry::{Lattice, PreparedRay, beyond, slack},
+    geometry::{PreparedRay, beyond},
     math::{greatest, least},
 };
 
@@ -16,8 +17,7 @@ use crate::{
 pub struct CompactKdTraversal<'a> {
     nodes: &'a [u32],
     references: References<'a>,
-    lattice: Lattice,
-    slack: f32,
+    slopes: Slopes,
     /// The cell to go on with: the whole at first, after a pause the one before which it was; none behind a leaf.
     next: Option<Segment>,
     /// Far children, the nearest on top.
@@ -27,15 +27,8 @@ pub struct CompactKdTraversal<'a> {
 impl<'a> CompactKdTraversal<'a> {
     #[inline]
     pub(super) fn new(tree: &CompactKdTree<'a>, ray: &PreparedRay) -> Self {
-        let slack = slack(ray.ray().t_min);
-        Self {
-            nodes: tree.nodes,
-            references: tree.references,
-            lattice: tree.lattice,
-            slack,
-            next: Segment::whole(&tree.bounds, ray, slack),
-            waiting: Waiting::new(),
-        }
+        let (slopes, next) = Slopes::new(ray, &tree.lattice, 1.0);
+        Self { nodes: tree.nodes, references: tree.references, slopes, next, waiting: Waiting::new() }
     }
 
     /// The primitives of the leaf at `index`.
@@ -57,8 +50,7 @@ impl<'a> CompactKdTraversal<'a> {
 
     #[inline(always)]
     fn advance<const BOUNDED: bool>(&mut self, ray: &PreparedRay, t_max: f32, budget: &mut u32) -> Step<Leaf<'a>> {
-        let (nodes, slack, end) = (self.nodes, self.slack, beyond(t_max));
-        let lattice = self.lattice;
+        let (nodes, end) = (self.nodes, beyond(t_max));
         let Some(mut cell) = self.next.take().or_else(|| self.waiting.pop(end)) else { return Step::Done };
         loop {
             if BOUNDED {
@@ -70,8 +62,7 @@ impl<'a> CompactKdTraversal<'a> {
             }
             let Some(&word) = nodes.get(cell.node as usize) else { return Step::Done };
             let node = Node::from_word(word);
-            let axis = node.axis_or_leaf();
-            if axis == Node::LEAF {
+            let Some(slope) = self.slopes.along(node.axis_or_leaf()) else {
                 if node.count() != 0 {
                     return Step::Leaf(self.leaf(node, cell.node));
                 }
@@ -80,14 +71,11 @@ impl<'a> CompactKdTraversal<'a> {
                     None => return Step::Done,
                 }
                 continue;
-            }
+            };
             // The child on the ray's side first.
-            let view = &ray.views[axis as usize];
             let descended = node.is_descended(ray.descending);
-            // The far child begins at one plane of a step, the near one ends at the other.
-            let (begin, end_of) = (node.plane() + u32::from(descended), node.plane() + u32::from(!descended));
-            let entry = (lattice.plane(axis, begin) - view.origin) * view.entry;
-            let exit = (lattice.plane(axis, end_of) - view.origin) * view.exit + slack;
+            // The far child begins at one face of a plane that is a step thick, the near one ends at the other.
+            let (entry, exit) = (slope.entry(node.plane()), slope.exit(node.plane()));
             // Written so that NaN, the ray in the plane, visits both.
             if node.is_cut() {
                 // One child: the cell shrinks to it, or the ray passes it by.
