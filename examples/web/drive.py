@@ -32,9 +32,9 @@ class Browser:
 
     def __init__(self):
         self.driver = subprocess.Popen(["chromedriver", "--port=0"], stdout=subprocess.PIPE, text=True)
-        line = next(line for line in self.driver.stdout if "on port" in line)
+        line = next(line for line in self.driver.stdout if "successfully" in line)
         threading.Thread(target=self.driver.stdout.read, daemon=True).start()
-        self.root = f"http://127.0.0.1:{re.search(r'on port (\d+)', line)[1]}/session"
+        self.root = "http://127.0.0.1:" + re.search(r"on port (\d+)", line)[1] + "/session"
         wanted = {"goog:chromeOptions": {"args": FLAGS}, "goog:loggingPrefs": {"browser": "ALL"}}
         self.root += "/" + self.call("", {"capabilities": {"alwaysMatch": wanted}})["sessionId"]
 

@@ -91,7 +91,7 @@ const answers = {
         at("progress").value = progress;
         at("rays").textContent = count(rays);
         at("speed").textContent = spent > 0 ? `${(rays / spent / 1000).toFixed(2)} Mrays/s` : "–";
-        at("nodes").textContent = nodes > 0 ? (nodes / (canvas.width * canvas.height)).toFixed(1) : "tick “as heat”";
+        at("nodes").textContent = (nodes / rays).toFixed(1);
         at("legend").hidden = !at("heat").checked;
         if (pictureTime) {
             at("time").textContent = time(pictureTime);

@@ -146,7 +146,7 @@ extern "C" fn rays() -> f64 {
     with(|instance| instance.world.map_or(0.0, |world| world.rays() as f64))
 }
 
-/// Nodes visited since the picture began, if they are counted.
+/// Nodes visited since the picture began.
 #[unsafe(no_mangle)]
 extern "C" fn nodes() -> f64 {
     with(|instance| instance.world.map_or(0.0, |world| world.nodes() as f64))

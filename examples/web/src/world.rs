@@ -14,8 +14,7 @@ use crate::{Model, View, lighting::Lighting, plan, smooth::Smooth};
 /// A model under a structure, lit.
 #[expect(missing_debug_implementations, reason = "scenes behind a trait have none")]
 pub struct World {
-    plain: Tally,
-    counted: Tally,
+    scene: Tally,
     nodes: &'static Cell<u64>,
     primitives: u32,
     structure_bytes: usize,
@@ -35,20 +34,20 @@ impl World {
         let model: &'static Model = Box::leak(Box::new(model));
         let plan = plan(structure, preset).ok_or("There is no such structure.")?;
         let mesh = Mesh::new(&model.vertices, model.triangles.as_slice()).map_err(|error| error.to_string())?;
-        let spheres = Spheres::new(&model.spheres).map_err(|error| error.to_string())?;
+        // Without its numbers: to write floats takes 20 kB of module.
+        let spheres = Spheres::new(&model.spheres).map_err(|_| "A ball has no radius or is too far out.")?;
         let shape = (Smooth::new(mesh, &model.normals), spheres);
 
         let count = model.triangles.len() + model.spheres.len();
         let words = vec![0; plan.words(count)].leak();
         let structure = Structure::build(&shape, &mut Arena::new(words), &plan).map_err(|error| error.to_string())?;
         let nodes: &'static Cell<u64> = Box::leak(Box::default());
-        let scene = Scene::new(structure, shape).map_err(|error| error.to_string())?;
-        let counted = Scene::new(Counted::new(structure, nodes), shape).map_err(|error| error.to_string())?;
+        // Always counted: linking every walk twice would not fit into the module.
+        let scene = Scene::new(Counted::new(structure, nodes), shape).map_err(|error| error.to_string())?;
 
         let focus = model.focus.unwrap_or(scene.bounds());
         Ok(Self {
-            plain: Tally::new(scene),
-            counted: Tally::new(counted),
+            scene: Tally::new(scene),
             nodes,
             primitives: structure.primitives(),
             structure_bytes: structure.as_words().len() * 4,
@@ -61,9 +60,8 @@ impl World {
 
     /// The picture of a view, its counts begun anew.
     pub(crate) fn renderer(&self, view: &View, samples: u32) -> Renderer<'_, Tally> {
-        let scene = if view.heat { &self.counted } else { &self.plain };
         let [below, above] = self.lighting.background;
-        Renderer::new(scene, self.camera(view), view.width, view.height)
+        Renderer::new(&self.scene, self.camera(view), view.width, view.height)
             .with_lights(&self.lighting.lights)
             .with_ambient(self.lighting.ambient)
             .with_background(below, above)
@@ -90,18 +88,17 @@ impl World {
 
     /// Begins to count anew.
     pub(crate) fn reset(&self) {
-        for count in [&self.plain.rays, &self.counted.rays, self.nodes] {
-            count.set(0);
-        }
+        self.scene.rays.set(0);
+        self.nodes.set(0);
     }
 
     /// Rays cast.
     #[must_use]
     pub fn rays(&self) -> u64 {
-        self.plain.rays.get() + self.counted.rays.get()
+        self.scene.rays.get()
     }
 
-    /// Nodes visited, if they are counted.
+    /// Nodes visited.
     #[must_use]
     pub fn nodes(&self) -> u64 {
         self.nodes.get()
