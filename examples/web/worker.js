@@ -1,7 +1,5 @@
 // The worker: one instance of the module for each model and structure; draws in short turns, so that it always listens.
 
-import { readMesh } from "./mesh.js";
-
 // How long to draw before listening again, and at most between two looks at the clock, in ms.
 const TURN = 12;
 const LOOK = 3;
@@ -11,9 +9,11 @@ const module = fetch("hitscan.wasm")
         if (!response.ok) {
             throw new Error(`hitscan.wasm: ${response.status}. Build it first: examples/web/build`);
         }
-        return response.arrayBuffer();
-    })
-    .then((bytes) => WebAssembly.compile(bytes));
+        // Some servers of files do not know the type.
+        return response.headers.get("Content-Type") === "application/wasm"
+            ? WebAssembly.compileStreaming(response)
+            : response.arrayBuffer().then((bytes) => WebAssembly.compile(bytes));
+    });
 
 let engine = null; // The exports of the instance that draws.
 let job = null; // The picture being drawn.
@@ -28,7 +28,7 @@ function sentence({ memory, text, text_length }) {
 async function open({ source, structure, preset }) {
     const turn = ++opening;
     try {
-        const mesh = source.file ? await readMesh(source.file) : null;
+        const mesh = source.file ? await (await import("./mesh.js")).readMesh(source.file) : null;
         const { exports } = await WebAssembly.instantiate(await module);
         if (turn !== opening) {
             return; // Something else was chosen meanwhile.
