@@ -147,9 +147,13 @@ def check_load(page):
     times = []
     for _ in range(3):
         page.load()
-        times.append(page.browser.js("return ['first tile', 'first picture'].map((n) => performance.getEntriesByName(n)[0].startTime)"))
-    tile, picture = (min(column) for column in zip(*times))
-    print(f"first tile after {tile:.0f} ms, first picture after {picture:.0f} ms (best of 3; meant: 100 and 1000)")
+        times.append(page.browser.js("""
+            const loaded = performance.getEntriesByType("navigation")[0].loadEventStart;
+            const marks = ["first tile", "first picture"].map((name) => performance.getEntriesByName(name)[0].startTime);
+            return [...marks.map((mark) => mark - loaded), loaded];"""))
+    # Printed, not judged: machines that run checks are busy with others.
+    tile, picture, loaded = (min(column) for column in zip(*times))
+    print(f"loaded in {loaded:.0f} ms; first tile {tile:.0f} ms later (100), first picture {picture:.0f} ms later (1000)")
     figures = {name: page.text(name) for name in ("primitives", "bytes", "build", "speed", "time")}
     print(", ".join(f"{name} {figure}" for name, figure in figures.items()))
 
@@ -209,7 +213,15 @@ def check_camera(page):
     assert pinched["zoom"] > 1.5, f"pinch: {pinched}"
     assert page.hash() == page.native(0), "zoomed, it differs from the library's"
     browser.keys("\ue011")
-    page.finished()
+    home = page.hash()
+    # Without a structure a picture takes a minute; the page stays live, and lets go of it at once.
+    browser.js("const s = document.querySelector('#structure'); s.value = '0'; s.dispatchEvent(new Event('change'))")
+    browser.wait("bytes.textContent === '0 B'", "the list")
+    browser.keys("\ue014")
+    browser.wait("progress.value > 0 && progress.value < 1", "a part of a picture")
+    browser.keys("\ue011")
+    page.choose("#structure", "3")
+    assert page.hash() == home, "a picture that was given up leaves traces"
     # Every field can be reached, and has a name.
     reached = set()
     for _ in range(20):
@@ -268,11 +280,18 @@ def check_files(page, folder):
         page.finished()
         assert page.text("primitives") == ("4" if "quad" in name.lower() else "6"), f"{name}: {page.text('primitives')}"
     shown = page.hash()
+    page.choose("#structure", "0")
+    assert page.hash() == shown, "the list, which all others must equal, draws another picture"
+    page.choose("#structure", "3")
     for name in bad:
         refused = page.give(folder / name)
         assert refused and name in refused, f"{name} was taken, or without a word: {refused}"
-        assert page.hash() == shown or page.browser.js("return picture.dataset.state") != "done", f"{name} changed the picture"
+        page.browser.js("picture.dataset.state = 'done'")
+        assert page.hash() == shown, f"{name} changed the picture"
         print(f"    {refused}")
+    page.choose("#heat", True)
+    page.choose("#heat", False)
+    assert page.hash() == shown, "after files that are none, the page draws something else"
     page.browser.js("""
         const items = new DataTransfer();
         items.items.add(new File(arguments, "dropped.obj"));

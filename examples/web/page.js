@@ -5,7 +5,7 @@ const canvas = at("picture");
 const context = canvas.getContext("2d", { alpha: false });
 const HOME = { yaw: 0.14, pitch: 0.42, zoom: 1 };
 // A picture of more pixels is stretched by the browser.
-const WIDEST = 640;
+const WIDEST = 560;
 
 const camera = { ...HOME };
 let source = { builtIn: 0 };
@@ -21,6 +21,7 @@ function complain(text) {
 // ---- To the worker
 
 function open() {
+    at("build").textContent = "building …";
     worker.postMessage({
         kind: "open",
         source,
@@ -51,7 +52,7 @@ function draw() {
 const count = (number) => Math.round(number).toLocaleString("en");
 const bytes = (number) => (number < 10_000 ? `${count(number)} B` : `${(number / 1000).toFixed(1)} kB`);
 const time = (ms) => (ms < 1000 ? `${ms.toFixed(ms < 10 ? 1 : 0)} ms` : `${(ms / 1000).toFixed(2)} s`);
-let perPrimitive = 0;
+let built = "–";
 
 const answers = {
     opened({ source: opened, primitives, structureBytes, buildTime }) {
@@ -63,15 +64,17 @@ const answers = {
             option.hidden = option.disabled = false;
         }
         at("model").value = opened.name ? "file" : opened.builtIn;
-        perPrimitive = structureBytes / primitives;
         at("primitives").textContent = count(primitives);
-        at("bytes").textContent = `${bytes(structureBytes)}, ${perPrimitive.toFixed(1)} each`;
-        at("build").textContent = time(buildTime);
+        at("bytes").textContent = bytes(structureBytes);
+        at("each").textContent = `${(structureBytes / primitives).toFixed(1)} B`;
+        built = time(buildTime);
+        at("build").textContent = built;
         draw();
     },
 
     refused({ text }) {
         complain(text);
+        at("build").textContent = built;
         source = shown ?? source;
         at("model").value = source.name ? "file" : source.builtIn;
         at("file").value = "";
@@ -215,14 +218,30 @@ canvas.addEventListener("keydown", (event) => {
 
 // ---- Begin
 
+/** Fetches and compiles the engine, while the worker starts. */
+async function compile() {
+    const response = await fetch("hitscan.wasm");
+    if (!response.ok) {
+        throw new Error(`hitscan.wasm: ${response.status}. Build it first: examples/web/build`);
+    }
+    // Some servers of files do not know the type.
+    return response.headers.get("Content-Type") === "application/wasm"
+        ? WebAssembly.compileStreaming(response)
+        : WebAssembly.compile(await response.arrayBuffer());
+}
+
 if (typeof WebAssembly !== "object" || typeof Worker !== "function") {
     complain("This browser has no WebAssembly or no workers, which the engine needs. Any browser since 2018 has both.");
 } else {
+    worker = new Worker("worker.js", { type: "module" });
+    worker.addEventListener("message", ({ data }) => answers[data.kind](data));
+    worker.addEventListener("error", (event) => complain(`The engine stopped: ${event.message ?? "it could not be loaded"}. Reload the page.`));
+    open();
+    compile().then(
+        (module) => worker.postMessage({ kind: "module", module }),
+        (error) => complain(`The engine could not be loaded. ${error.message}`),
+    );
     const scale = Math.min(WIDEST, Math.round(canvas.clientWidth * devicePixelRatio)) / 4;
     canvas.width = Math.max(1, Math.floor(scale)) * 4;
     canvas.height = canvas.width / 4 * 3;
-    worker = new Worker("worker.js", { type: "module" });
-    worker.addEventListener("message", ({ data }) => answers[data.kind](data));
-    worker.addEventListener("error", () => complain("The engine could not be loaded: reload the page, or build it first (examples/web/build)."));
-    open();
 }

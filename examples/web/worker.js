@@ -4,16 +4,9 @@
 const TURN = 12;
 const LOOK = 3;
 
-const module = fetch("hitscan.wasm")
-    .then((response) => {
-        if (!response.ok) {
-            throw new Error(`hitscan.wasm: ${response.status}. Build it first: examples/web/build`);
-        }
-        // Some servers of files do not know the type.
-        return response.headers.get("Content-Type") === "application/wasm"
-            ? WebAssembly.compileStreaming(response)
-            : response.arrayBuffer().then((bytes) => WebAssembly.compile(bytes));
-    });
+// The compiled module, once the page sends it.
+let arrived;
+const module = new Promise((resolve) => { arrived = resolve; });
 
 let engine = null; // The exports of the instance that draws.
 let job = null; // The picture being drawn.
@@ -35,7 +28,9 @@ async function open({ source, structure, preset }) {
         }
         const begun = performance.now();
         if (mesh) {
-            new Uint32Array(exports.memory.buffer, exports.input(mesh.length), mesh.length).set(mesh);
+            // First the room: to make it may move the memory.
+            const room = exports.input(mesh.length);
+            new Uint32Array(exports.memory.buffer, room, mesh.length).set(mesh);
         }
         const refused = (mesh ? exports.take_message() : exports.take_built_in(source.builtIn))
             || exports.build(structure, preset);
@@ -52,7 +47,10 @@ async function open({ source, structure, preset }) {
         });
     } catch (error) {
         const trap = error instanceof WebAssembly.RuntimeError || error instanceof RangeError;
-        const why = trap ? "It needs more memory than the browser gives." : error.message;
+        const why = trap ? "The engine gave up on it, most likely for want of memory." : error.message;
+        if (turn !== opening) {
+            return;
+        }
         answer("refused", { text: `${source.name ?? "The model"} is not shown. ${why}` });
     }
 }
@@ -63,17 +61,20 @@ function draw({ picture, view }) {
     }
     const { width, height, yaw, pitch, zoom, terms, bounces, samples, heat } = view;
     engine.begin(width, height, yaw, pitch, zoom, terms, bounces, samples, heat);
-    const idle = job === null;
     // Blocks at a time: few at first, for nobody knows yet how long one takes.
     job = { picture, view, blocks: 64, drawn: 0, spent: 0, begun: performance.now(), pictureTime: 0 };
-    if (idle) {
+    if (!waiting) {
         work();
     }
 }
 
 // A message to oneself comes after those of the page, and sooner than any timer.
 const again = new MessageChannel();
-again.port1.onmessage = work;
+let waiting = false;
+again.port1.onmessage = () => {
+    waiting = false;
+    work();
+};
 
 function work() {
     if (!job) {
@@ -114,6 +115,7 @@ function work() {
         pictureTime: job.pictureTime,
     }, sent.map(({ pixels }) => pixels.buffer));
     if (more) {
+        waiting = true;
         again.port2.postMessage(null);
     } else {
         job = null;
@@ -130,4 +132,5 @@ function copy({ x, y, width, height }, rowPixels, rows) {
     return pixels;
 }
 
-onmessage = ({ data }) => (data.kind === "open" ? open(data) : draw(data));
+const requests = { open, draw, module: ({ module }) => arrived(module) };
+onmessage = ({ data }) => requests[data.kind](data);

@@ -33,8 +33,8 @@ fn turn(angle: f32) -> (f32, f32) {
 
 /// A knot of copper among balls that mirror it, on a checkered board.
 fn knot() -> Model {
-    const RINGS: u32 = 180;
-    const CORNERS: u32 = 16;
+    const RINGS: u32 = 150;
+    const CORNERS: u32 = 14;
     const ROPE: f32 = 0.34;
     let middle = |at: f32| {
         let ((cos, sin), (wide, high)) = (turn(TAU * (2.0 * at + 0.25)), turn(TAU * 3.0 * at));
@@ -67,7 +67,7 @@ fn knot() -> Model {
         }
     }
     let mut model =
-        Model { focus: Some(Aabb::new(Vec3::new(-2.0, 0.0, -1.6), Vec3::new(2.0, 2.9, 1.6))), ..Model::default() };
+        Model { focus: Some(Aabb::new(Vec3::new(-2.2, -0.3, -1.6), Vec3::new(2.2, 2.8, 1.6))), ..Model::default() };
     model.push(&points, &triangles, copper);
     board(&mut model);
     let mirror = Material::matte(Vec3::splat(0.04)).with_highlights(0.9, 400.0).with_reflectivity(0.86);
