@@ -111,7 +111,9 @@ class Page:
     def hash(self):
         self.finished()
         return self.browser.js("""
-            const { data } = picture.getContext("2d").getImageData(0, 0, picture.width, picture.height);
+            const scratch = new OffscreenCanvas(picture.width, picture.height).getContext("2d", { willReadFrequently: true });
+            scratch.drawImage(picture, 0, 0);
+            const { data } = scratch.getImageData(0, 0, picture.width, picture.height);
             return crypto.subtle.digest("SHA-256", data)
                 .then((sum) => [...new Uint8Array(sum)].map((byte) => byte.toString(16).padStart(2, "0")).join(""));""")
 

@@ -50,7 +50,7 @@ function draw() {
 // ---- From the worker
 
 const count = (number) => Math.round(number).toLocaleString("en");
-const bytes = (number) => (number < 10_000 ? `${count(number)} B` : `${(number / 1000).toFixed(1)} kB`);
+const bytes = (number) => (number < 1e4 ? `${number} B` : number < 1e6 ? `${(number / 1e3).toFixed(1)} kB` : `${(number / 1e6).toFixed(2)} MB`);
 const time = (ms) => (ms < 1000 ? `${ms.toFixed(ms < 10 ? 1 : 0)} ms` : `${(ms / 1000).toFixed(2)} s`);
 let built = "–";
 
@@ -66,7 +66,7 @@ const answers = {
         at("model").value = opened.name ? "file" : opened.builtIn;
         at("primitives").textContent = count(primitives);
         at("bytes").textContent = bytes(structureBytes);
-        at("each").textContent = `${(structureBytes / primitives).toFixed(1)} B`;
+        at("each").textContent = (structureBytes / primitives).toFixed(1);
         built = time(buildTime);
         at("build").textContent = built;
         draw();
@@ -93,7 +93,7 @@ const answers = {
         }
         at("progress").value = progress;
         at("rays").textContent = count(rays);
-        at("speed").textContent = spent > 0 ? `${(rays / spent / 1000).toFixed(2)} Mrays/s` : "–";
+        at("speed").textContent = spent > 0 ? (rays / spent / 1000).toFixed(2) : "–";
         at("nodes").textContent = (nodes / rays).toFixed(1);
         at("legend").hidden = !at("heat").checked;
         if (pictureTime) {

@@ -162,7 +162,8 @@ fn terrain() -> Model {
     let points: Vec<(Vec3, Vec3)> = points.into_iter().zip(normals).collect();
     let grass = Material::matte(Vec3::new(0.23, 0.30, 0.10));
     let water = Material::matte(Vec3::new(0.02, 0.10, 0.14)).with_highlights(0.8, 200.0).with_reflectivity(0.45);
-    let mut model = Model::default();
+    let mut model =
+        Model { focus: Some(Aabb::new(Vec3::new(-1.4, -0.4, -1.4), Vec3::new(1.4, 0.4, 1.4))), ..Model::default() };
     model.push(&points, &triangles, grass);
     let corners =
         [(-2.0, -2.0), (-2.0, 2.0), (2.0, 2.0), (2.0, -2.0)].map(|(x, z)| (Vec3::new(x, -0.12, z), Vec3::ZERO));
