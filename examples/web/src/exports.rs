@@ -98,7 +98,7 @@ extern "C" fn begin(
     with(|instance| instance.picture = instance.world.map(|world| Picture::new(world, view)));
 }
 
-/// Draws at most so many blocks, all of one tile; how many pixels or blocks it drew, 0 at the end.
+/// Draws at most so many blocks, all of one tile; how many, 0 at the end.
 #[unsafe(no_mangle)]
 extern "C" fn step(blocks: u32) -> u32 {
     with(|instance| instance.picture.as_mut().map_or(0, |picture| picture.step(blocks)))

@@ -88,21 +88,21 @@ impl Order {
         }
     }
 
-    /// The blocks up to the end of the tile or so many, offered to `draw`; how many. At the end of a tile the next begins.
+    /// Offers blocks to `draw`, up to the end of a tile or so many; how many, 0 at the end of the picture.
     pub fn step(&mut self, blocks: u32, mut draw: impl FnMut(Block)) -> u32 {
-        for drawn in 0..blocks {
+        let mut drawn = 0;
+        while drawn < blocks {
             match self.next_in_tile() {
-                Some(block) => draw(block),
-                None if drawn > 0 => return drawn,
-                None if !self.advance() => return 0,
-                None => match self.next_in_tile() {
-                    Some(block) => draw(block),
-                    // All of this tile was drawn in coarser passes: none of it is left.
-                    None => return self.step(blocks, draw),
-                },
+                Some(block) => {
+                    draw(block);
+                    drawn += 1;
+                }
+                // What is left of a tile may be nothing: then the next is begun.
+                None if drawn > 0 || !self.advance() => break,
+                None => {}
             }
         }
-        blocks
+        drawn
     }
 }
 
