@@ -57,3 +57,35 @@ impl Message {
         Some(model)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A triangle of one material.
+    fn triangle() -> Vec<u32> {
+        let floats = [0.0_f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0].map(f32::to_bits);
+        [&[3, 1, 1, 2][..], &floats, &[0, 1, 2], &[0; 8], &[0]].concat()
+    }
+
+    #[test]
+    fn whole_messages_are_taken_and_others_refused() {
+        let whole = triangle();
+        let model = Message::read(&whole).unwrap();
+        assert_eq!((model.triangles.len(), model.axes()[0]), (3, Vec3::Z));
+        assert!((0..whole.len()).all(|end| Message::read(&whole[..end]).is_err()));
+        assert!(Message::read(&[&whole[..], &[0]].concat()).is_err());
+    }
+
+    #[test]
+    fn any_word_in_any_place_is_taken_or_refused() {
+        for place in 0..triangle().len() {
+            for word in [0, 1, 2, 7, u32::MAX, f32::NAN.to_bits(), f32::MAX.to_bits()] {
+                let mut damaged = triangle();
+                damaged[place] = word;
+                let world = Message::read(&damaged).and_then(|model| crate::World::new(model, 3, 1));
+                assert!(world.is_ok() || world.is_err_and(|sentence| !sentence.is_empty()));
+            }
+        }
+    }
+}

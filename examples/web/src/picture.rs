@@ -95,3 +95,33 @@ fn fill(pixels: &mut [[u8; 4]], width: u32, block: Block, color: [u8; 4]) {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::BuiltIn;
+
+    #[test]
+    fn steps_of_any_size_come_to_the_same_as_all_at_once() {
+        let world = World::new(BuiltIn::model(0).unwrap(), 3, 1).unwrap();
+        let view = View {
+            width: 45,
+            height: 37,
+            yaw: 0.3,
+            pitch: 0.4,
+            zoom: 1.0,
+            terms: 31,
+            bounces: 2,
+            samples: 2,
+            heat: false,
+        };
+        for view in [view, View { heat: true, ..view }, View { width: 0, ..view }, View { pitch: f32::NAN, ..view }] {
+            let whole = Picture::at_once(&world, view);
+            for blocks in [1, 50, u32::MAX] {
+                let mut picture = Picture::new(&world, view);
+                while picture.step(blocks) > 0 {}
+                assert!(picture.pixels() == whole, "{view:?} in steps of {blocks}");
+            }
+        }
+    }
+}
