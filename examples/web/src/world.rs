@@ -34,7 +34,7 @@ impl World {
         let model: &'static Model = Box::leak(Box::new(model));
         let plan = plan(structure, preset).ok_or("There is no such structure.")?;
         let mesh = Mesh::new(&model.vertices, model.triangles.as_slice()).map_err(|error| error.to_string())?;
-        // Without its numbers: to write floats takes 20 kB of module.
+        // Without its numbers: to write floats takes 25 kB of module.
         let spheres = Spheres::new(&model.spheres).map_err(|_| "A ball has no radius or is too far out.")?;
         let shape = (Smooth::new(mesh, &model.normals), spheres);
 
