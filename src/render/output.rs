@@ -32,14 +32,14 @@ impl<S: Caster + ?Sized> Renderer<'_, S> {
     ///
     /// `swap` takes a full buffer and gives one to draw into. With two buffers one is on its way to the display while the
     /// other is drawn; with one, `swap` gives it back when it has been sent. Tiles of one row make it a line callback.
-    /// Returns the buffer that it has in the end.
+    /// Returns the buffer that it has in the end, or the error with which `swap` ended the picture.
     ///
     /// ```
     /// # use hitscan::{List, Mesh, Scene, glam::Vec3};
     /// # let vertices = [Vec3::ZERO, Vec3::X, Vec3::Y];
     /// # let mesh = Mesh::new(&vertices, &[[0_u16, 1, 2]])?;
     /// # let scene = Scene::new(List::new(&mesh)?, &mesh)?;
-    /// use hitscan::render::{Camera, Ordered, Renderer, TooShort};
+    /// use hitscan::render::{Camera, Ordered, Renderer};
     ///
     /// /// Sends a buffer in the background: what a DMA channel does.
     /// struct Transfer<'a>(&'a mut [[u8; 2]]);
@@ -61,30 +61,32 @@ impl<S: Caster + ?Sized> Renderer<'_, S> {
     /// renderer.stream((240, 4), Ordered, first.as_mut_slice(), |_tile, full| {
     ///     let free = transfer.take().map(Transfer::wait);
     ///     transfer = Some(Transfer::start(full));
-    ///     free.ok_or(TooShort { needed: 960, available: 0 })
-    /// })?;
+    ///     free.ok_or("the other buffer is lost")
+    /// })??;
     /// # Ok::<(), Box<dyn core::error::Error>>(())
     /// ```
     ///
     /// # Errors
     ///
-    /// [`TooShort`] if a tile has more pixels than the buffer; those of `swap`.
+    /// [`TooShort`] if a tile has more pixels than the buffer.
     pub fn stream<C, B, E>(
         &self,
         tile: (u32, u32),
         mut dither: impl Dither,
         mut buffer: B,
         mut swap: impl FnMut(Tile, B) -> Result<B, E>,
-    ) -> Result<B, E>
+    ) -> Result<Result<B, E>, TooShort>
     where
         C: Channels,
         B: AsMut<[C]>,
-        E: From<TooShort>,
     {
         for tile in self.tiles(tile.0, tile.1) {
             self.fill_dithered(tile, buffer.as_mut(), &mut dither)?;
-            buffer = swap(tile, buffer)?;
+            buffer = match swap(tile, buffer) {
+                Ok(free) => free,
+                Err(error) => return Ok(Err(error)),
+            };
         }
-        Ok(buffer)
+        Ok(Ok(buffer))
     }
 }

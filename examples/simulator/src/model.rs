@@ -26,19 +26,19 @@ pub fn with<R>(
     let (vertices, triangles) = knot::mesh(160, 16);
     let floor = vertices.iter().map(|vertex| vertex.z).fold(0.0, f32::min);
     let balls =
-        [Sphere::new(Vec3::new(0.0, 0.0, floor - 200.0), 200.0), Sphere::new(Vec3::new(1.75, -1.45, floor + 0.4), 0.4)];
+        [Sphere::new(Vec3::new(0.0, 0.0, floor - 200.0), 200.0), Sphere::new(Vec3::new(1.45, -1.5, floor + 0.4), 0.4)];
     let shapes = (Mesh::new(&vertices, triangles.as_slice())?, Spheres::new(&balls)?);
     let mut memory = vec![0; KdTree::words(triangles.len() + balls.len(), &Options::balanced())];
     let tree = KdTree::build(&shapes, &mut Arena::new(&mut memory), &Options::balanced())?;
     let scene = Scene::new(tree, shapes)?;
 
     let palette = [
-        Material::matte(Vec3::new(0.85, 0.32, 0.08)).with_highlights(0.5, 40.0).with_reflectivity(0.08),
-        Material::matte(Vec3::splat(0.09)).with_reflectivity(0.12),
+        Material::matte(Vec3::new(0.9, 0.42, 0.15)).with_highlights(0.5, 40.0).with_reflectivity(0.08),
+        Material::matte(Vec3::splat(0.05)).with_reflectivity(0.12),
         Material::matte(Vec3::splat(0.05)).with_highlights(0.9, 200.0).with_reflectivity(0.85),
     ];
     let numbers: Vec<u8> = iter::repeat_n(0, triangles.len()).chain([1, 2]).collect();
-    let lights = [Light::point(Vec3::new(3.0, -2.5, 6.0), Vec3::splat(0.95))];
+    let lights = [Light::point(Vec3::new(3.0, -2.5, 6.0), Vec3::splat(1.3))];
     show(&|width, height| {
         // The knot is wider than high.
         let fov = if width < 2 * height { 0.64 } else { 0.44 };
