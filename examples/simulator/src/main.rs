@@ -27,10 +27,10 @@ fn main() -> Result<ExitCode, Box<dyn Error>> {
         let oled = show(&picture(128, 64), Ordered, "ordered", binary)?;
         let paper = show(&picture(296, 128), Diffusion::new(&mut errors), "error diffusion", binary)?;
         Ok([
-            save(folder, "color", &color, 1, 0)?,
-            save(folder, "grey", &grey, 2, 0)?,
-            save(folder, "oled", &oled, 2, 0)?,
-            save(folder, "paper", &paper, 1, 0)?,
+            save(folder, "color", &color, 1, 0x5b1f_3b86)?,
+            save(folder, "grey", &grey, 2, 0x952b_5ed0)?,
+            save(folder, "oled", &oled, 2, 0x0274_07fc)?,
+            save(folder, "paper", &paper, 1, 0x3a1b_fc82)?,
         ])
     })?;
     Ok(if shown.contains(&false) { ExitCode::FAILURE } else { ExitCode::SUCCESS })

@@ -33,7 +33,7 @@ pub fn with<R>(
     let scene = Scene::new(tree, shapes)?;
 
     let palette = [
-        Material::matte(Vec3::new(0.9, 0.42, 0.15)).with_highlights(0.5, 40.0).with_reflectivity(0.08),
+        Material::matte(Vec3::new(0.9, 0.34, 0.09)).with_highlights(0.5, 40.0).with_reflectivity(0.08),
         Material::matte(Vec3::splat(0.05)).with_reflectivity(0.12),
         Material::matte(Vec3::splat(0.05)).with_highlights(0.9, 200.0).with_reflectivity(0.85),
     ];
