@@ -28,9 +28,9 @@ fn main() -> Result<ExitCode, Box<dyn Error>> {
         let paper = show(&picture(296, 128), Diffusion::new(&mut errors), "error diffusion", binary)?;
         Ok([
             save(folder, "color", &color, 1, 0x5b1f_3b86)?,
-            save(folder, "grey", &grey, 2, 0x952b_5ed0)?,
+            save(folder, "grey", &grey, 2, 0x8a6d_bb81)?,
             save(folder, "oled", &oled, 2, 0x0274_07fc)?,
-            save(folder, "paper", &paper, 1, 0x3a1b_fc82)?,
+            save(folder, "paper", &paper, 1, 0xadc0_a400)?,
         ])
     })?;
     Ok(if shown.contains(&false) { ExitCode::FAILURE } else { ExitCode::SUCCESS })
