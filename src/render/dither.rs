@@ -37,7 +37,7 @@ impl Dither for Nearest {
 ///
 /// ```
 /// use hitscan::{glam::Vec3, render::{Dither, Ordered}};
-/// let lit = (0..64).filter(|i| Ordered.color::<u8>((i % 8, i / 8), Vec3::splat(0.2172)) == 129).count();
+/// let lit = (0..64).filter(|i| Ordered.color::<u8>((i % 8, i / 8), Vec3::splat(0.21723)) == 129).count();
 /// assert_eq!(lit, 24); // the others are 128
 /// ```
 #[derive(Clone, Copy, Debug, Default)]
