@@ -186,8 +186,13 @@ mod display {
         Pixel,
         draw_target::DrawTarget,
         geometry::{Dimensions, Point, Size},
-        pixelcolor::{Gray8, Rgb565, Rgb888, RgbColor},
+        pixelcolor::{BinaryColor, Gray2, Gray4, Gray8, GrayColor, PixelColor, Rgb565, Rgb666, Rgb888, RgbColor},
         primitives::Rectangle,
+    };
+
+    use hitscan::{
+        display::{self, Strip},
+        render::{Channels, Diffusion, Dither, Nearest, Ordered},
     };
 
     use super::*;
@@ -204,7 +209,7 @@ mod display {
         }
     }
 
-    impl<C: embedded_graphics_core::pixelcolor::PixelColor> DrawTarget for Screen<C> {
+    impl<C: PixelColor> DrawTarget for Screen<C> {
         type Color = C;
         type Error = Infallible;
 
@@ -217,10 +222,10 @@ mod display {
         }
     }
 
-    fn shown<C: hitscan::render::Color + embedded_graphics_core::pixelcolor::PixelColor>() -> Vec<C> {
+    fn shown<C: Channels + PixelColor>(dither: impl Dither) -> Vec<C> {
         with_renderer(32, 24, |renderer| {
             let mut screen = Screen { width: 40, pixels: vec![None; 40 * 30] };
-            hitscan::display::draw(renderer, &mut screen, Point::new(5, 3), (7, 5)).unwrap();
+            display::draw(renderer, &mut screen, Point::new(5, 3), (7, 5), dither).unwrap();
             let drawn: Vec<C> = screen.pixels.into_iter().flatten().collect();
             assert_eq!(drawn.len(), 32 * 24);
             drawn
@@ -232,13 +237,53 @@ mod display {
         let rgb: Vec<[u8; 3]> = with_renderer(32, 24, whole);
         let rgb565: Vec<u16> = with_renderer(32, 24, whole);
         let grey: Vec<u8> = with_renderer(32, 24, whole);
-        assert!(shown::<Rgb888>().iter().zip(&rgb).all(|(a, b)| [a.r(), a.g(), a.b()] == *b));
-        assert!(
-            shown::<Rgb565>()
-                .iter()
-                .zip(&rgb565)
-                .all(|(a, b)| { u16::from(a.r()) << 11 | u16::from(a.g()) << 5 | u16::from(a.b()) == *b })
-        );
-        assert!(shown::<Gray8>().iter().zip(&grey).all(|(a, b)| *a == Gray8::new(*b)));
+        assert!(shown::<Rgb888>(Nearest).iter().zip(&rgb).all(|(a, b)| [a.r(), a.g(), a.b()] == *b));
+        assert!(shown::<Rgb565>(Nearest).iter().zip(&rgb565).all(|(a, b)| packed(*a) == *b));
+        assert!(shown::<Gray8>(Nearest).iter().zip(&grey).all(|(a, b)| *a == Gray8::new(*b)));
+        assert!(shown::<Gray4>(Nearest).iter().zip(&grey).all(|(a, b)| a.luma() == (b + 8) / 17));
+        assert!(shown::<Gray2>(Nearest).iter().zip(&grey).all(|(a, b)| a.luma() == (b / 2 + 21) / 43));
+        assert!(shown::<BinaryColor>(Nearest).iter().zip(&grey).all(|(a, b)| a.is_on() == (*b > 127)));
+    }
+
+    fn packed(color: Rgb565) -> u16 {
+        u16::from(color.r()) << 11 | u16::from(color.g()) << 5 | u16::from(color.b())
+    }
+
+    #[test]
+    fn displays_show_few_colors_as_memory_does() {
+        let tile = Tile { x: 0, y: 0, width: 32, height: 24 };
+        let dithered: Vec<u16> = with_renderer(32, 24, |renderer| renderer.dithered(tile, Ordered).collect());
+        let shown565: Vec<Rgb565> = shown(Ordered);
+        assert!(shown565.iter().zip(&dithered).all(|(a, b)| packed(*a) == *b));
+        let mut errors = [0; 3 * 32];
+        // Six bits are nearer than five.
+        let distance = |picture: Vec<[f32; 3]>| -> f32 {
+            let rgb: Vec<[u8; 3]> = with_renderer(32, 24, whole);
+            let pairs = picture.iter().flatten().zip(rgb.iter().flatten());
+            pairs.map(|(a, &b)| (a - f32::from(b) / 255.0).abs()).sum()
+        };
+        let six = shown::<Rgb666>(Diffusion::new(&mut errors));
+        let six = distance(six.iter().map(|c| [c.r(), c.g(), c.b()].map(|level| f32::from(level) / 63.0)).collect());
+        let eight = shown::<Rgb888>(Diffusion::new(&mut errors));
+        let eight =
+            distance(eight.iter().map(|c| [c.r(), c.g(), c.b()].map(|level| f32::from(level) / 255.0)).collect());
+        assert!(eight * 2.0 < six && six < 32.0 * 24.0 * 3.0 / 63.0, "{eight} {six}");
+    }
+
+    #[test]
+    fn strips_are_drawn_on_within_their_tile() {
+        let tile = Tile { x: 3, y: 4, width: 5, height: 2 };
+        let mut pixels = [7_u8; 10];
+        let mut strip = Strip::new(tile, &mut pixels);
+        assert_eq!(strip.bounding_box(), Rectangle::new(Point::new(3, 4), Size::new(5, 2)));
+        let area = Rectangle::new(Point::new(6, -3), Size::new(100, 8));
+        strip.fill_solid(&area, Gray8::WHITE).unwrap();
+        assert_eq!(pixels, [7, 7, 7, 255, 255, 7, 7, 7, 7, 7]);
+        // Less memory than the tile has pixels, and tiles beyond all points.
+        Strip::new(tile, &mut pixels[..4]).fill_solid(&area, Gray8::BLACK).unwrap();
+        assert_eq!(pixels, [7, 7, 7, 0, 255, 7, 7, 7, 7, 7]);
+        let far = Tile { x: u32::MAX, y: u32::MAX, width: u32::MAX, height: u32::MAX };
+        Strip::new(far, &mut pixels).fill_solid(&area, Gray8::BLACK).unwrap();
+        assert_eq!(pixels, [7, 7, 7, 0, 255, 7, 7, 7, 7, 7]);
     }
 }

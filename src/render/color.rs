@@ -36,6 +36,13 @@ impl Color for u16 {
     }
 }
 
+/// sRGB in RGB565, the upper byte first, as displays take it: `as_flattened` makes one slice of bytes of many.
+impl Color for [u8; 2] {
+    fn from_linear(rgb: Vec3) -> Self {
+        u16::from_linear(rgb).to_be_bytes()
+    }
+}
+
 /// sRGB luminance.
 impl Color for u8 {
     fn from_linear(rgb: Vec3) -> Self {

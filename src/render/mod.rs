@@ -2,12 +2,16 @@
 //!
 //! A [`Renderer`] holds no pixels. It is asked for them: one [`pixel`](Renderer::pixel), the colours of a
 //! [`Tile`] as an iterator, or a tile filled into a slice; threads, displays and network nodes all use the same tiles.
+//! For displays of few colours a [`Dither`] chooses them.
 
 mod camera;
 mod caster;
 mod color;
+mod dither;
+mod levels;
 mod light;
 mod material;
+mod output;
 mod renderer;
 mod shade;
 mod tile;
@@ -15,6 +19,10 @@ mod tile;
 pub use camera::Camera;
 pub use caster::Caster;
 pub use color::Color;
+#[cfg(feature = "graphics")]
+pub(crate) use color::{encode, luminance};
+pub use dither::{Diffusion, Dither, Nearest, Ordered};
+pub use levels::{Channels, Levels};
 pub use light::Light;
 pub use material::{Material, Materials, Numbers};
 pub use renderer::{Renderer, TooShort};

@@ -67,6 +67,7 @@ pub fn save_pixels(name: &str, width: u32, pixels: &[[u8; 3]]) -> Fallible {
     let path = folder.join(name).with_extension("png");
     let mut encoder = png::Encoder::new(fs::File::create(&path)?, width, pixels.len() as u32 / width.max(1));
     encoder.set_color(png::ColorType::Rgb);
+    encoder.set_compression(png::Compression::High);
     encoder.write_header()?.write_image_data(pixels.as_flattened())?;
     println!("{}", path.display());
     Ok(())

@@ -2,10 +2,18 @@
 
 use core::hint::black_box;
 
+use embedded_graphics_core::{
+    geometry::Point,
+    pixelcolor::{BinaryColor, Gray4, Rgb565},
+};
 use hitscan::{
     List, Scene,
+    display::{self, Stored, Strip},
     primitives::Spheres,
-    render::{Camera, Light, Material, Materials, Numbers, Renderer, Terms},
+    render::{
+        Camera, Caster, Channels, Diffusion, Dither, Light, Material, Materials, Nearest, Numbers, Ordered, Renderer,
+        Terms, Tile,
+    },
 };
 
 use crate::{
@@ -37,7 +45,32 @@ pub fn all() {
         black_box(pixels);
     }
     black_box(renderer.pixel(word(), word()));
+    dithered(&renderer, Nearest);
+    dithered(&renderer, Ordered);
+    let mut errors = [0; 64];
+    let mut diffusion = Diffusion::new(black_box(errors.as_mut_slice()));
+    diffusion.restart();
+    dithered(&renderer, diffusion);
     sensor::sees(&scene);
+}
+
+/// Pictures for displays of few colours, in memory and drawn.
+fn dithered<S: Caster>(renderer: &Renderer<'_, S>, mut dither: impl Dither) {
+    let pixels = [[0_u8; 2]; 64];
+    let swap = |tile, pixels| if word() == 0 { Ok(pixels) } else { Err(tile) };
+    black_box(renderer.stream((word(), word()), &mut dither, pixels, swap).is_ok());
+    drawn::<u16, _>(renderer, &mut dither, 0);
+    drawn::<Rgb565, _>(renderer, &mut dither, Rgb565::new(0, 0, 0));
+    drawn::<Gray4, _>(renderer, &mut dither, Gray4::new(0));
+    drawn::<BinaryColor, _>(renderer, &mut dither, BinaryColor::Off);
+}
+
+fn drawn<P: Stored<Shown: Channels>, S: Caster>(renderer: &Renderer<'_, S>, dither: impl Dither, pixel: P) {
+    let mut pixels = [pixel; 64];
+    let tile = Tile { x: word(), y: word(), width: word(), height: word() };
+    let mut strip = Strip::new(tile, black_box(pixels.as_mut_slice()));
+    let at = Point::new(word() as i32, word() as i32);
+    black_box(display::draw(renderer, &mut strip, at, (word(), word()), dither).is_ok());
 }
 
 fn camera() -> Camera {
