@@ -1,0 +1,103 @@
+use core::mem::swap;
+
+use super::{Cell, Hierarchy, Inside};
+use crate::geometry::{Aabb, Bundle};
+
+/// A place where walks may begin: a part of a structure and a box around it.
+#[derive(Clone, Copy, Debug)]
+pub struct Entry {
+    /// The box.
+    pub bounds: Aabb,
+    /// What the structure knows the part by.
+    pub node: u32,
+    /// No ray of the bundle enters the box before this.
+    pub enter: f32,
+}
+
+/// The parts of a structure that the rays of a [`Bundle`] can enter, the nearest first.
+///
+/// Reshetov, Soupikov and Hurley, *Multi-level ray tracing algorithm*, 2005, with some entries in the place of one.
+#[derive(Clone, Debug)]
+pub struct Entries(heapless::Vec<Entry, MOST>);
+
+/// How many entries there may be.
+const MOST: usize = 8;
+
+/// Levels that a search goes down at most: the rest is for the walks, and no search takes long.
+const LEVELS: usize = 20;
+
+impl Entries {
+    /// One: everything, for rays of which nothing is known.
+    #[must_use]
+    pub fn everything(bounds: Aabb) -> Self {
+        let mut entries = Self(heapless::Vec::new());
+        entries.insert(Entry { bounds, node: 0, enter: f32::NEG_INFINITY });
+        entries
+    }
+
+    /// Everything, or nothing if no ray meets its box.
+    #[must_use]
+    pub fn whole(bounds: Aabb, bundle: &Bundle) -> Self {
+        match bundle.entry(&bounds) {
+            Some(_) => Self::everything(bounds),
+            None => Self(heapless::Vec::new()),
+        }
+    }
+
+    /// At most `most` subtrees of a structure that together hold all that the rays can meet.
+    ///
+    /// Level by level: what no ray meets goes, what they meet takes its parent's place. Where there is no room for both
+    /// children, their parent stays, so that nothing is ever left out.
+    pub(crate) fn find<H: Hierarchy<Node = u32>>(structure: &H, bundle: &Bundle, most: usize) -> Self {
+        let meet = |cell: Cell<u32>| {
+            let enter = bundle.entry(&cell.bounds)?;
+            Some(Entry { bounds: cell.bounds, node: cell.node, enter })
+        };
+        let mut entries = Self(heapless::Vec::new());
+        structure.root().and_then(meet).into_iter().for_each(|root| entries.insert(root));
+        for _ in 0..LEVELS {
+            let (mut below, mut left, mut changed) = (Self(heapless::Vec::new()), entries.0.len(), false);
+            for &entry in entries.iter() {
+                left -= 1;
+                let cell = Cell { bounds: entry.bounds, node: entry.node };
+                let children = match structure.open(&cell) {
+                    Inside::Cells(children) => children.map(|child| child.and_then(meet)),
+                    Inside::Leaf(_) => [Some(entry), None],
+                };
+                let room = most.saturating_sub(below.0.len() + left);
+                if room < children.iter().flatten().count() {
+                    below.insert(entry);
+                } else {
+                    changed |= !matches!(children, [Some(child), None] if child.node == entry.node);
+                    children.into_iter().flatten().for_each(|child| below.insert(child));
+                }
+            }
+            entries = below;
+            if !changed {
+                break;
+            }
+        }
+        entries
+    }
+
+    /// Whether no ray of the bundle meets anything.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// The entries, the nearest first.
+    pub fn iter(&self) -> impl Iterator<Item = &Entry> {
+        self.0.iter()
+    }
+
+    /// Puts an entry in its place; there is room.
+    fn insert(&mut self, mut entry: Entry) {
+        for place in &mut self.0 {
+            if entry.enter < place.enter {
+                swap(place, &mut entry);
+            }
+        }
+        let _ = self.0.push(entry);
+    }
+}
