@@ -49,27 +49,34 @@ impl Entries {
     /// Level by level: what no ray meets goes, what they meet takes its parent's place. Where there is no room for both
     /// children, their parent stays, so that nothing is ever left out.
     pub(crate) fn find<H: Hierarchy<Node = u32>>(structure: &H, bundle: &Bundle, most: usize) -> Self {
-        let meet = |cell: Cell<u32>| {
-            let enter = bundle.entry(&cell.bounds)?;
-            Some(Entry { bounds: cell.bounds, node: cell.node, enter })
-        };
         let mut entries = Self(heapless::Vec::new());
-        structure.root().and_then(meet).into_iter().for_each(|root| entries.insert(root));
+        if let Some(Cell { bounds, node }) = structure.root()
+            && let Some(enter) = bundle.entry(&bounds)
+        {
+            entries.insert(Entry { bounds, node, enter });
+        }
         for _ in 0..LEVELS {
             let (mut below, mut left, mut changed) = (Self(heapless::Vec::new()), entries.0.len(), false);
-            for &entry in entries.iter() {
+            for entry in entries.iter() {
                 left -= 1;
-                let cell = Cell { bounds: entry.bounds, node: entry.node };
-                let children = match structure.open(&cell) {
-                    Inside::Cells(children) => children.map(|child| child.and_then(meet)),
-                    Inside::Leaf(_) => [Some(entry), None],
+                let children = match structure.open(&Cell { bounds: entry.bounds, node: entry.node }) {
+                    Inside::Cells(children) => children,
+                    Inside::Leaf(_) => {
+                        below.insert(*entry);
+                        continue;
+                    }
                 };
+                let enters = children.each_ref().map(|child| bundle.entry(&child.as_ref()?.bounds));
                 let room = most.saturating_sub(below.0.len() + left);
-                if room < children.iter().flatten().count() {
-                    below.insert(entry);
-                } else {
-                    changed |= !matches!(children, [Some(child), None] if child.node == entry.node);
-                    children.into_iter().flatten().for_each(|child| below.insert(child));
+                if enters.iter().flatten().count() > room {
+                    below.insert(*entry);
+                    continue;
+                }
+                changed = true;
+                for (child, enter) in children.iter().zip(enters) {
+                    if let (Some(Cell { bounds, node }), Some(enter)) = (child, enter) {
+                        below.insert(Entry { bounds: *bounds, node: *node, enter });
+                    }
                 }
             }
             entries = below;

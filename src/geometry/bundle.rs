@@ -22,9 +22,10 @@ pub struct Bundle {
 
 /// The rays as one axis sees them, by the way they go along it.
 #[derive(Clone, Copy, Debug)]
-struct Slab {
-    ascending: Option<Way>,
-    descending: Option<Way>,
+enum Slab {
+    Ascending(Way),
+    Descending(Way),
+    Both([Way; 2]),
 }
 
 /// Rays that go the same way along an axis, seen so that they ascend.
@@ -74,27 +75,33 @@ impl Bundle {
             directions = directions.union(&Aabb::new(ray.direction, ray.direction));
             enter = least(ray.t_min, enter);
         }
+        if !enter.is_finite() {
+            return None;
+        }
         let slab = |axis: Axis| {
             let of = |bounds: &Aabb| [axis.of(bounds.min), axis.of(bounds.max)];
             let ([first, last], [low, high]) = (of(&origins), of(&directions));
-            Slab {
-                ascending: Way::new([first, last], [low, high]),
-                descending: Way::new([-last, -first], [-high, -low]),
+            let ascending = Way::new([first, last], [low, high]);
+            match (ascending, Way::new([-last, -first], [-high, -low])) {
+                (Some(way), None) => Some(Slab::Ascending(way)),
+                (None, Some(way)) => Some(Slab::Descending(way)),
+                (Some(up), Some(down)) => Some(Slab::Both([up, down])),
+                (None, None) => None,
             }
         };
-        enter.is_finite().then(|| Self { slabs: Axis::ALL.map(slab), enter })
+        Some(Self { slabs: [slab(Axis::X)?, slab(Axis::Y)?, slab(Axis::Z)?], enter })
     }
 
     /// A parameter before which none of the rays enters the box; `None` if none of them meets it.
     #[must_use]
     pub fn entry(&self, bounds: &Aabb) -> Option<f32> {
         let (mut enter, mut exit) = (self.enter, f32::INFINITY);
-        for (axis, slab) in Axis::ALL.into_iter().zip(&self.slabs) {
-            let (min, max) = (axis.of(bounds.min), axis.of(bounds.max));
-            let (e, x) = match (slab.ascending, slab.descending) {
-                (Some(way), None) => way.between(min, max),
-                (None, Some(way)) => way.between(-max, -min),
-                (Some(up), Some(down)) => {
+        let (min, max) = (bounds.min.to_array(), bounds.max.to_array());
+        for ((slab, min), max) in self.slabs.iter().zip(min).zip(max) {
+            let (e, x) = match slab {
+                Slab::Ascending(way) => way.between(min, max),
+                Slab::Descending(way) => way.between(-max, -min),
+                Slab::Both([up, down]) => {
                     let meets = |(e, x): (f32, f32)| !(greatest(e, enter) > least(x, exit));
                     let (up, down) = (up.between(min, max), down.between(-max, -min));
                     match (meets(up), meets(down)) {
@@ -104,11 +111,13 @@ impl Bundle {
                         (false, false) => return None,
                     }
                 }
-                (None, None) => return None,
             };
             enter = greatest(e, enter);
             exit = least(x, exit);
+            if enter > exit {
+                return None;
+            }
         }
-        if enter > exit { None } else { Some(enter) }
+        Some(enter)
     }
 }
