@@ -21,10 +21,10 @@ pub struct Entry {
 pub struct Entries(heapless::Vec<Entry, MOST>);
 
 /// How many entries there may be.
-const MOST: usize = 8;
+const MOST: usize = 4;
 
 /// Levels that a search goes down at most: the rest is for the walks, and no search takes long.
-const LEVELS: usize = 20;
+const LEVELS: usize = 12;
 
 impl Entries {
     /// One: everything, for rays of which nothing is known.

@@ -14,6 +14,12 @@ pub(crate) struct Segment {
 }
 
 impl Segment {
+    /// The part of the ray in the bounds of everything, for the first node.
+    #[inline(always)]
+    pub(crate) fn whole(bounds: &Aabb, ray: &PreparedRay, slack: f32) -> Option<Self> {
+        Self::within(bounds, 0, ray, slack)
+    }
+
     /// The part of the ray in the bounds of a node where a walk begins; exits are late by `slack`, as in all of the walk.
     #[inline(always)]
     pub(crate) fn within(bounds: &Aabb, node: u32, ray: &PreparedRay, slack: f32) -> Option<Self> {

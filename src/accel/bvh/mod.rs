@@ -199,8 +199,9 @@ impl<'a> Accelerator for Bvh<'a> {
         BvhTraversal::new(self, ray)
     }
 
+    /// Some entries: a look at a pair of boxes costs a ray more than an entry does.
     fn enter(&self, bundle: &Bundle) -> Entries {
-        Entries::find(self, bundle, 8)
+        Entries::find(self, bundle, 4)
     }
 
     #[inline]
