@@ -187,7 +187,7 @@ fn entries_are_few_and_small() {
         }
         assert!(empty > 100, "{plan:?}: {empty} tiles are empty");
         let part = part / tiles as f32;
-        assert!(part < 0.5, "{plan:?}: walks begin with {part}");
+        assert!(part < 0.8, "{plan:?}: walks begin with {part}");
     }
 }
 
