@@ -3,10 +3,10 @@
 use core::fmt;
 
 use crate::{
-    accel::{Accelerator, Traversal},
+    accel::{Accelerator, Entries, Traversal},
     asset::{Asset, Stored},
     error::Error,
-    geometry::{Aabb, PreparedRay, Ray},
+    geometry::{Aabb, Bundle, PreparedRay, Ray, beyond},
     primitives::{Hit, Primitives, Span, Surface},
     query::{Any, Closest, Collector, Hits, Nearest, Next, PausedQuery, Where, end_of, start_of},
 };
@@ -102,6 +102,48 @@ impl<A: Accelerator, P: Primitives> Scene<A, P> {
         let ray = prepared.as_ref()?;
         let mut closest = Closest::new(ray);
         self.search(ray, &mut closest);
+        closest.hit()
+    }
+
+    /// Where walks of the rays in `bundle` may begin, for [`closest_hit_from`](Self::closest_hit_from): the few parts of
+    /// the structure that they can enter.
+    ///
+    /// ```
+    /// # use hitscan::{List, Mesh, Ray, Scene, geometry::Bundle, glam::Vec3};
+    /// # let vertices = [Vec3::ZERO, Vec3::X, Vec3::Y];
+    /// # let mesh = Mesh::new(&vertices, &[[0_u16, 1, 2]])?;
+    /// # let scene = Scene::new(List::new(&mesh)?, &mesh)?;
+    /// let rays = [0.1, 0.2, 0.3].map(|x| Ray::new(Vec3::new(x, 0.2, -1.0), Vec3::Z));
+    /// let entries = scene.enter(&Bundle::around(rays).unwrap());
+    /// for ray in &rays {
+    ///     assert_eq!(scene.closest_hit_from(&entries, ray), scene.closest_hit(ray));
+    /// }
+    /// # Ok::<(), hitscan::Error>(())
+    /// ```
+    #[must_use]
+    pub fn enter(&self, bundle: &Bundle) -> Entries {
+        self.accelerator.enter(bundle)
+    }
+
+    /// The first hit of a ray of the bundle for which these entries were found, the same as [`closest_hit`](Self::closest_hit).
+    #[must_use]
+    pub fn closest_hit_from(&self, entries: &Entries, ray: &Ray) -> Option<Hit> {
+        if entries.is_empty() {
+            return None;
+        }
+        let prepared = ray.prepare();
+        let ray = prepared.as_ref()?;
+        let mut closest = Closest::new(ray);
+        for entry in entries.iter() {
+            // All that is left begins later.
+            if entry.enter > beyond(closest.until().t) {
+                break;
+            }
+            let mut traversal = self.accelerator.traverse_from(entry, ray);
+            while let Some(leaf) = traversal.next_leaf(ray, closest.until().t) {
+                self.offer(leaf, ray, &mut closest);
+            }
+        }
         closest.hit()
     }
 

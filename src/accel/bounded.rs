@@ -1,5 +1,5 @@
-use super::{Accelerator, Cell, Hierarchy, Inside, Step, Traversal};
-use crate::geometry::{Aabb, PreparedRay, Volume};
+use super::{Accelerator, Cell, Entries, Entry, Hierarchy, Inside, Step, Traversal};
+use crate::geometry::{Aabb, Bundle, PreparedRay, Volume};
 
 /// A structure behind a volume: rays that miss the volume are not walked at all.
 ///
@@ -59,6 +59,16 @@ impl<V: Volume, A: Accelerator> Accelerator for Bounded<V, A> {
     fn traverse(&self, ray: &PreparedRay) -> Self::Traversal {
         let meets = self.volume.may_meet(ray, ray.ray().t_max);
         BoundedTraversal { inner: if meets { Some(self.accelerator.traverse(ray)) } else { None } }
+    }
+
+    fn enter(&self, bundle: &Bundle) -> Entries {
+        self.accelerator.enter(bundle)
+    }
+
+    /// Without a look at the volume: the entry's box is the smaller one.
+    #[inline]
+    fn traverse_from(&self, entry: &Entry, ray: &PreparedRay) -> Self::Traversal {
+        BoundedTraversal { inner: Some(self.accelerator.traverse_from(entry, ray)) }
     }
 }
 

@@ -1,7 +1,7 @@
 use core::cell::Cell as Count;
 
-use super::{Accelerator, Cell, Hierarchy, Inside, Step, Traversal};
-use crate::geometry::{Aabb, PreparedRay};
+use super::{Accelerator, Cell, Entries, Entry, Hierarchy, Inside, Step, Traversal};
+use crate::geometry::{Aabb, Bundle, PreparedRay};
 
 /// A structure that counts the nodes its walks visit: a decorator, so that nobody else pays.
 ///
@@ -48,6 +48,14 @@ impl<'c, A: Accelerator> Accelerator for Counted<'c, A> {
 
     fn traverse(&self, ray: &PreparedRay) -> Self::Traversal {
         CountedTraversal { inner: self.accelerator.traverse(ray), nodes: self.nodes }
+    }
+
+    fn enter(&self, bundle: &Bundle) -> Entries {
+        self.accelerator.enter(bundle)
+    }
+
+    fn traverse_from(&self, entry: &Entry, ray: &PreparedRay) -> Self::Traversal {
+        CountedTraversal { inner: self.accelerator.traverse_from(entry, ray), nodes: self.nodes }
     }
 }
 

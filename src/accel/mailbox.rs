@@ -1,5 +1,5 @@
-use super::{Accelerator, Step, Traversal};
-use crate::geometry::{Aabb, PreparedRay};
+use super::{Accelerator, Entries, Entry, Step, Traversal};
+use crate::geometry::{Aabb, Bundle, PreparedRay};
 
 /// How many primitives are remembered, and of how many in a leaf it is looked up whether they are.
 const RECENT: usize = 32;
@@ -41,6 +41,15 @@ where
     #[inline]
     fn traverse(&self, ray: &PreparedRay) -> Self::Traversal {
         MailboxTraversal { inner: self.0.traverse(ray), recent: [u32::MAX; RECENT] }
+    }
+
+    fn enter(&self, bundle: &Bundle) -> Entries {
+        self.0.enter(bundle)
+    }
+
+    #[inline]
+    fn traverse_from(&self, entry: &Entry, ray: &PreparedRay) -> Self::Traversal {
+        MailboxTraversal { inner: self.0.traverse_from(entry, ray), recent: [u32::MAX; RECENT] }
     }
 }
 

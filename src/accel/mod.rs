@@ -7,6 +7,7 @@ mod bounded;
 pub mod bvh;
 mod counted;
 pub mod dualsplit;
+mod entry;
 pub mod grid;
 mod hierarchy;
 pub mod kdtree;
@@ -25,6 +26,7 @@ pub use bounded::{Bounded, BoundedTraversal};
 pub use bvh::Bvh;
 pub use counted::{Counted, CountedTraversal};
 pub use dualsplit::DualSplit;
+pub use entry::{Entries, Entry};
 pub use grid::Grid;
 pub use hierarchy::{Cell, Hierarchy, Inside, MAX_LEVELS};
 pub use kdtree::{CompactKdTree, KdTree};
@@ -36,7 +38,7 @@ pub use octree::Octree;
 pub use on_lattice::{LatticeAccelerator, LatticeWalk};
 pub use structure::{AnyLeaf, AnyNode, AnyTraversal, Plan, Structure};
 
-use crate::geometry::{Aabb, PreparedRay};
+use crate::geometry::{Aabb, Bundle, PreparedRay};
 
 /// A structure over numbered boxes.
 pub trait Accelerator {
@@ -51,6 +53,16 @@ pub trait Accelerator {
 
     /// A cursor at the beginning of `ray`, which all later calls must repeat.
     fn traverse(&self, ray: &PreparedRay) -> Self::Traversal;
+
+    /// Where walks of the rays in `bundle` may begin: together, the entries hold all that one of them can meet.
+    fn enter(&self, bundle: &Bundle) -> Entries {
+        Entries::whole(self.bounds(), bundle)
+    }
+
+    /// As [`traverse`](Self::traverse), of what is in one of the entries that this structure gave for the ray.
+    fn traverse_from(&self, _entry: &Entry, ray: &PreparedRay) -> Self::Traversal {
+        self.traverse(ray)
+    }
 }
 
 /// A walk along a ray: a state machine that can stop at any leaf, or any node, and go on later.

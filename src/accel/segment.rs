@@ -14,9 +14,15 @@ pub(crate) struct Segment {
 }
 
 impl Segment {
-    /// The part of the ray in the bounds of everything, for the first node; exits are late by `slack`, as in all of the walk.
+    /// The part of the ray in the bounds of everything, for the first node.
     #[inline(always)]
     pub(crate) fn whole(bounds: &Aabb, ray: &PreparedRay, slack: f32) -> Option<Self> {
+        Self::within(bounds, 0, ray, slack)
+    }
+
+    /// The part of the ray in the bounds of a node where a walk begins; exits are late by `slack`, as in all of the walk.
+    #[inline(always)]
+    pub(crate) fn within(bounds: &Aabb, node: u32, ray: &PreparedRay, slack: f32) -> Option<Self> {
         let (mut enter, mut exit) = (ray.ray().t_min, beyond(ray.ray().t_max));
         let (min, max) = (bounds.min.to_array(), bounds.max.to_array());
         for ((min, max), view) in min.into_iter().zip(max).zip(&ray.views) {
@@ -24,7 +30,7 @@ impl Segment {
             enter = greatest((near - view.origin) * view.entry, enter);
             exit = least((far - view.origin) * view.exit + slack, exit);
         }
-        Self::between(enter, exit)
+        Self::between(enter, exit).map(|segment| Self { node, ..segment })
     }
 
     /// From `enter` to `exit`, for the first node; none if it ends before it begins.

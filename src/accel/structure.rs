@@ -1,14 +1,14 @@
 //! All structures as one type, for tools that let people choose.
 
 use super::{
-    Accelerator, Bvh, Cell, CompactKdTree, DualSplit, Grid, Hierarchy, Inside, KdTree, Leaf, List, Octree, Step,
-    Traversal, bvh, dualsplit, grid, kdtree, octree,
+    Accelerator, Bvh, Cell, CompactKdTree, DualSplit, Entries, Entry, Grid, Hierarchy, Inside, KdTree, Leaf, List,
+    Octree, Step, Traversal, bvh, dualsplit, grid, kdtree, octree,
 };
 use crate::{
     arena::Arena,
     asset::{Asset, AssetError, Kind, Stored},
     error::{BuildError, Error},
-    geometry::{Aabb, PreparedRay},
+    geometry::{Aabb, Bundle, PreparedRay},
     primitives::Primitives,
 };
 
@@ -140,6 +140,20 @@ macro_rules! structures {
                 match self {
                     Self::List(list) => AnyTraversal::List(list.traverse(ray)),
                     $(Self::$name(structure) => AnyTraversal::$name(structure.traverse(ray)),)*
+                }
+            }
+
+            fn enter(&self, bundle: &Bundle) -> Entries {
+                match self {
+                    Self::List(list) => list.enter(bundle),
+                    $(Self::$name(structure) => structure.enter(bundle),)*
+                }
+            }
+
+            fn traverse_from(&self, entry: &Entry, ray: &PreparedRay) -> AnyTraversal<'a> {
+                match self {
+                    Self::List(list) => AnyTraversal::List(list.traverse_from(entry, ray)),
+                    $(Self::$name(structure) => AnyTraversal::$name(structure.traverse_from(entry, ray)),)*
                 }
             }
         }

@@ -6,6 +6,7 @@
 mod aabb;
 mod axis;
 pub mod bounding;
+mod bundle;
 mod lattice;
 mod obb;
 mod on_lattice;
@@ -18,6 +19,8 @@ mod volume;
 pub use aabb::Aabb;
 pub use axis::Axis;
 pub use bounding::{Bounding, BoundingVolume};
+pub use bundle::Bundle;
+
 pub use lattice::Lattice;
 pub use obb::Obb;
 pub(crate) use on_lattice::Depth;

@@ -7,7 +7,7 @@ use crate::math::greatest;
 ///
 /// It covers the 2^-17 within which a triangle's `t` is certified and the three roundings of a plane's
 /// parameter, with as much again to spare.
-const WIDENING: f32 = 1.0 / 65536.0;
+pub(crate) const WIDENING: f32 = 1.0 / 65536.0;
 
 /// Absolute slack of every exit, 2^-126: more than what underflow can take from a product.
 pub(crate) const TINY: f32 = f32::MIN_POSITIVE;

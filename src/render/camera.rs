@@ -1,7 +1,8 @@
 use glam::Vec3;
 
+use super::Tile;
 use crate::{
-    geometry::{Aabb, Ray},
+    geometry::{Aabb, Bundle, Ray},
     math,
     primitives::unit,
 };
@@ -86,5 +87,17 @@ impl Camera {
         } else {
             Ray::new(self.eye, self.forward + across)
         }
+    }
+
+    /// All rays through the points of a tile of a picture; `None` if they are to be looked at one by one.
+    ///
+    /// Coordinate by coordinate, a ray's numbers rise or fall with `x` and with `y`, roundings included, so that those at the
+    /// corners of the tile bound them all.
+    #[must_use]
+    pub fn bundle(&self, tile: &Tile, width: u32, height: u32) -> Option<Bundle> {
+        let (left, right) = (tile.x as f32, tile.x.saturating_add(tile.width) as f32);
+        let (top, bottom) = (tile.y as f32, tile.y.saturating_add(tile.height) as f32);
+        let corners = [(left, top), (right, top), (left, bottom), (right, bottom)];
+        Bundle::around(corners.map(|(x, y)| self.ray(x, y, width, height)))
     }
 }

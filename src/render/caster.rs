@@ -1,6 +1,6 @@
 use crate::{
-    accel::Accelerator,
-    geometry::{Aabb, Ray},
+    accel::{Accelerator, Entries},
+    geometry::{Aabb, Bundle, Ray},
     primitives::{Hit, Primitives, Surface},
     scene::Scene,
 };
@@ -12,6 +12,16 @@ use crate::{
 pub trait Caster {
     /// The first hit of the ray.
     fn closest_hit(&self, ray: &Ray, depth: u32) -> Option<Hit>;
+
+    /// Where the camera's rays in a tile may begin; all tiles begin with everything unless this is implemented.
+    fn enter(&self, _bundle: &Bundle) -> Entries {
+        Entries::everything(self.bounds())
+    }
+
+    /// The first hit of a camera's ray, of the bundle for which these entries were found.
+    fn closest_hit_from(&self, _entries: &Entries, ray: &Ray) -> Option<Hit> {
+        self.closest_hit(ray, 0)
+    }
 
     /// Whether anything lies on the ray, a shadow ray.
     fn any_hit(&self, ray: &Ray, depth: u32) -> bool;
@@ -26,6 +36,14 @@ pub trait Caster {
 impl<A: Accelerator, P: Primitives> Caster for Scene<A, P> {
     fn closest_hit(&self, ray: &Ray, _depth: u32) -> Option<Hit> {
         Self::closest_hit(self, ray)
+    }
+
+    fn enter(&self, bundle: &Bundle) -> Entries {
+        Self::enter(self, bundle)
+    }
+
+    fn closest_hit_from(&self, entries: &Entries, ray: &Ray) -> Option<Hit> {
+        Self::closest_hit_from(self, entries, ray)
     }
 
     fn any_hit(&self, ray: &Ray, _depth: u32) -> bool {

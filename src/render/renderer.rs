@@ -2,8 +2,12 @@ use core::fmt;
 
 use glam::Vec3;
 
-use super::{Camera, Caster, Color, Light, Materials, Terms, Tile, Tiles, shade::mirror};
-use crate::{geometry::Ray, primitives::unit};
+use super::{Camera, Caster, Color, Light, Materials, Patch, Progressive, Terms, Tile, Tiles, shade::mirror};
+use crate::{
+    accel::Entries,
+    geometry::{Aabb, Bundle, Ray},
+    primitives::unit,
+};
 
 /// The slice for a tile's pixels has no room for all of them; it is untouched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,6 +26,9 @@ impl fmt::Display for TooShort {
 }
 
 impl core::error::Error for TooShort {}
+
+/// Pixels that a patch is wide and high.
+const PATCH: u32 = 8;
 
 /// A picture of a scene, computed where it is looked at.
 ///
@@ -150,8 +157,8 @@ impl<'a, S: Caster + ?Sized> Renderer<'a, S> {
 
     /// The colours of a tile, row by row, computed as they are taken.
     pub fn colors<C: Color>(&self, tile: Tile) -> impl Iterator<Item = C> + use<'a, C, S> {
-        let renderer = *self;
-        tile.pixels().map(move |(x, y)| C::from_linear(renderer.pixel(x, y)))
+        let patch = self.patch(tile);
+        tile.pixels().map(move |(x, y)| C::from_linear(patch.pixel(x, y)))
     }
 
     /// Computes the colours of a tile, row by row, into the beginning of `pixels`.
@@ -164,31 +171,83 @@ impl<'a, S: Caster + ?Sized> Renderer<'a, S> {
         if needed > available {
             return Err(TooShort { needed, available });
         }
-        for (pixel, color) in pixels.iter_mut().zip(self.colors(tile)) {
-            *pixel = color;
+        for part in tile.parts(PATCH, PATCH) {
+            let patch = self.patch(part);
+            for (x, y) in part.pixels() {
+                let index = (y - tile.y) as usize * tile.width as usize + (x - tile.x) as usize;
+                if let Some(pixel) = pixels.get_mut(index) {
+                    *pixel = C::from_linear(patch.pixel(x, y));
+                }
+            }
         }
         Ok(())
+    }
+
+    /// A tile, with where in the scene its rays may begin.
+    #[must_use]
+    pub fn patch(&self, tile: Tile) -> Patch<'a, S> {
+        Patch::new(*self, &tile)
+    }
+
+    /// The picture, rough at first, as much of it at a time as there is time for.
+    #[must_use]
+    pub fn progressive(&self) -> Progressive<'a, S> {
+        Progressive::new(*self)
+    }
+
+    /// Whether the camera may see something of a box through a tile: where nothing is in it before or after a change, the
+    /// tile need not be computed again, shadows and mirror images aside.
+    ///
+    /// ```
+    /// use hitscan::{List, Mesh, Scene, geometry::Aabb, glam::Vec3, render::{Camera, Renderer}};
+    /// let mesh = Mesh::new(&[Vec3::ZERO, Vec3::X, Vec3::Y], &[[0_u16, 1, 2]])?;
+    /// let scene = Scene::new(List::new(&mesh)?, &mesh)?;
+    /// let camera = Camera::pinhole(Vec3::new(0.0, 0.0, 5.0), Vec3::ZERO, Vec3::Y, 0.8);
+    /// let renderer = Renderer::new(&scene, camera, 64, 64);
+    /// let moved = Aabb::new(Vec3::ZERO, Vec3::splat(0.5));
+    /// assert_eq!(renderer.tiles(8, 8).filter(|tile| renderer.may_show(tile, &moved)).count(), 4);
+    /// # Ok::<(), hitscan::Error>(())
+    /// ```
+    #[must_use]
+    pub fn may_show(&self, tile: &Tile, bounds: &Aabb) -> bool {
+        self.bundle(tile).is_none_or(|bundle| bundle.entry(bounds).is_some())
+    }
+
+    /// All rays of a tile.
+    pub(super) fn bundle(&self, tile: &Tile) -> Option<Bundle> {
+        self.camera.bundle(tile, self.width, self.height)
     }
 
     /// The linear colour of a pixel, the mean of its samples.
     #[must_use]
     pub fn pixel(&self, x: u32, y: u32) -> Vec3 {
+        self.pixel_from(None, x, y)
+    }
+
+    /// The colour of a pixel whose rays may begin at `entries`.
+    pub(super) fn pixel_from(&self, entries: Option<&Entries>, x: u32, y: u32) -> Vec3 {
         let step = 1.0 / self.samples as f32;
         let mut sum = Vec3::ZERO;
         for j in 0..self.samples {
             for i in 0..self.samples {
                 let (dx, dy) = ((i as f32 + 0.5) * step, (j as f32 + 0.5) * step);
-                sum += self.light_along(self.camera.ray(x as f32 + dx, y as f32 + dy, self.width, self.height));
+                let ray = self.camera.ray(x as f32 + dx, y as f32 + dy, self.width, self.height);
+                sum += self.light_along(entries, ray);
             }
         }
         sum * (step * step)
     }
 
     /// The light that arrives against `ray`: Whitted, *An improved illumination model for shaded display*, 1980, as a loop.
-    fn light_along(&self, mut ray: Ray) -> Vec3 {
+    fn light_along(&self, mut entries: Option<&Entries>, mut ray: Ray) -> Vec3 {
         let (mut light, mut share) = (Vec3::ZERO, 1.0);
         for depth in 0..=self.bounces {
-            let Some(hit) = self.scene.closest_hit(&ray, depth) else {
+            // Only the camera's own ray begins where those of the tile do.
+            let hit = match entries.take() {
+                Some(entries) => self.scene.closest_hit_from(entries, &ray),
+                None => self.scene.closest_hit(&ray, depth),
+            };
+            let Some(hit) = hit else {
                 return light + self.sky(ray.direction) * share;
             };
             let surface = self.scene.surface(&ray, &hit);

@@ -19,6 +19,16 @@ impl Tile {
         (self.width as usize).saturating_mul(self.height as usize)
     }
 
+    /// It in tiles of at most this size.
+    pub fn parts(self, width: u32, height: u32) -> impl Iterator<Item = Self> {
+        let Self { x, y, .. } = self;
+        Tiles::new(self.width, self.height, width, height).map(move |part| Self {
+            x: x + part.x,
+            y: y + part.y,
+            ..part
+        })
+    }
+
     /// The coordinates of its pixels, row by row.
     pub fn pixels(self) -> impl Iterator<Item = (u32, u32)> {
         let columns = self.x..self.x.saturating_add(self.width);

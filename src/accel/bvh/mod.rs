@@ -27,12 +27,12 @@ pub use options::{Method, Options};
 pub use traverse::BvhTraversal;
 
 use self::node::{Link, PAIR_WORDS, Pair};
-use super::{Accelerator, Cell, Hierarchy, Inside, Leaf, leaf::References};
+use super::{Accelerator, Cell, Entries, Entry, Hierarchy, Inside, Leaf, leaf::References};
 use crate::{
     arena::Arena,
     asset::{Asset, Stored},
     error::{BuildError, Error},
-    geometry::{Aabb, Lattice, PreparedRay},
+    geometry::{Aabb, Bundle, Lattice, PreparedRay},
     primitives::Primitives,
 };
 
@@ -197,6 +197,16 @@ impl<'a> Accelerator for Bvh<'a> {
     #[inline]
     fn traverse(&self, ray: &PreparedRay) -> BvhTraversal<'a> {
         BvhTraversal::new(self, ray)
+    }
+
+    /// Some entries: a look at a pair of boxes costs a ray more than an entry does.
+    fn enter(&self, bundle: &Bundle) -> Entries {
+        Entries::find(self, bundle, 4)
+    }
+
+    #[inline]
+    fn traverse_from(&self, entry: &Entry, ray: &PreparedRay) -> BvhTraversal<'a> {
+        BvhTraversal::within(self, entry, ray)
     }
 }
 

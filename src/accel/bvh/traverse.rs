@@ -3,8 +3,8 @@ use super::{
     node::{Link, Node, Pair},
 };
 use crate::{
-    accel::{Leaf, Step, Traversal, leaf::References, slope::Slopes},
-    geometry::{Axis, PreparedRay, beyond},
+    accel::{Entry, Leaf, Step, Traversal, leaf::References, segment::Segment, slope::Slopes},
+    geometry::{Axis, PreparedRay, beyond, slack},
     math::{greatest, least},
 };
 
@@ -43,6 +43,17 @@ fn interval(node: &Node, slopes: &Slopes, descending: u32, mut enter: f32, mut e
 }
 
 impl<'a> BvhTraversal<'a> {
+    /// From an entry: its planes are those of the float arithmetic, whose interval the slopes' contains.
+    #[inline]
+    pub(super) fn within(bvh: &Bvh<'a>, entry: &Entry, ray: &PreparedRay) -> Self {
+        let mut walk = Self::new(bvh, ray);
+        if walk.next.is_some() {
+            let part = Segment::within(&entry.bounds, entry.node, ray, slack(ray.ray().t_min));
+            walk.next = part.map(|part| Cell { link: Link::from_bits(part.node), enter: part.enter });
+        }
+        walk
+    }
+
     #[inline]
     pub(super) fn new(bvh: &Bvh<'a>, ray: &PreparedRay) -> Self {
         let (slopes, whole) = Slopes::new(ray, &bvh.lattice, 0.0);

@@ -27,12 +27,12 @@ use self::{
     node::{Head, Kind},
     open::{Form, Header},
 };
-use super::{Accelerator, Cell, Hierarchy, Inside, Leaf, leaf::References};
+use super::{Accelerator, Cell, Entries, Entry, Hierarchy, Inside, Leaf, leaf::References};
 use crate::{
     arena::{Arena, Full},
     asset::{Asset, Stored},
     error::{BuildError, Error},
-    geometry::{Aabb, Lattice, PreparedRay},
+    geometry::{Aabb, Bundle, Lattice, PreparedRay},
     math::{greatest, least},
     primitives::Primitives,
 };
@@ -213,6 +213,16 @@ impl<'a> Accelerator for DualSplit<'a> {
     #[inline]
     fn traverse(&self, ray: &PreparedRay) -> DualSplitTraversal<'a> {
         DualSplitTraversal::new(self, ray)
+    }
+
+    /// One entry: a second one costs each ray more than it spares.
+    fn enter(&self, bundle: &Bundle) -> Entries {
+        Entries::find(self, bundle, 1)
+    }
+
+    #[inline]
+    fn traverse_from(&self, entry: &Entry, ray: &PreparedRay) -> DualSplitTraversal<'a> {
+        DualSplitTraversal::within(self, entry, ray)
     }
 }
 

@@ -1,12 +1,12 @@
 use super::{DualSplit, MAX_DEPTH, node::Head};
 use crate::{
     accel::{
-        Leaf, Step, Traversal,
+        Entry, Leaf, Step, Traversal,
         leaf::References,
         segment::{Segment, Waiting},
         slope::Slopes,
     },
-    geometry::{PreparedRay, beyond},
+    geometry::{PreparedRay, beyond, slack},
     math::{greatest, least},
 };
 
@@ -23,6 +23,16 @@ pub struct DualSplitTraversal<'a> {
 }
 
 impl<'a> DualSplitTraversal<'a> {
+    /// From an entry: its planes are those of the float arithmetic, whose interval the slopes' contains.
+    #[inline]
+    pub(super) fn within(tree: &DualSplit<'a>, entry: &Entry, ray: &PreparedRay) -> Self {
+        let mut walk = Self::new(tree, ray);
+        if walk.next.is_some() {
+            walk.next = Segment::within(&entry.bounds, entry.node, ray, slack(ray.ray().t_min));
+        }
+        walk
+    }
+
     #[inline]
     pub(super) fn new(tree: &DualSplit<'a>, ray: &PreparedRay) -> Self {
         let (slopes, next) = Slopes::new(ray, &tree.lattice, 0.0);

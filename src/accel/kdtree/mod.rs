@@ -23,12 +23,12 @@ use self::{
     form::Form,
     node::{Kind, Node, Side},
 };
-use super::{Accelerator, Cell, Hierarchy, Inside, Leaf, leaf::References};
+use super::{Accelerator, Cell, Entries, Entry, Hierarchy, Inside, Leaf, leaf::References};
 use crate::{
     arena::Arena,
     asset::{Asset, Stored},
     error::{BuildError, Error},
-    geometry::{Aabb, PreparedRay},
+    geometry::{Aabb, Bundle, PreparedRay},
     primitives::Primitives,
 };
 
@@ -174,7 +174,17 @@ impl<'a> Accelerator for KdTree<'a> {
 
     #[inline]
     fn traverse(&self, ray: &PreparedRay) -> KdTraversal<'a> {
-        KdTraversal::new(self, ray)
+        KdTraversal::new(self, &self.bounds, 0, ray)
+    }
+
+    /// One entry: a second one costs each ray more than it spares.
+    fn enter(&self, bundle: &Bundle) -> Entries {
+        Entries::find(self, bundle, 1)
+    }
+
+    #[inline]
+    fn traverse_from(&self, entry: &Entry, ray: &PreparedRay) -> KdTraversal<'a> {
+        KdTraversal::new(self, &entry.bounds, entry.node, ray)
     }
 }
 

@@ -5,7 +5,7 @@ use crate::{
         leaf::References,
         segment::{Segment, Waiting},
     },
-    geometry::{PreparedRay, beyond, slack},
+    geometry::{Aabb, PreparedRay, beyond, slack},
     math::{greatest, least},
 };
 
@@ -23,13 +23,13 @@ pub struct KdTraversal<'a> {
 
 impl<'a> KdTraversal<'a> {
     #[inline]
-    pub(super) fn new(tree: &KdTree<'a>, ray: &PreparedRay) -> Self {
+    pub(super) fn new(tree: &KdTree<'a>, bounds: &Aabb, node: u32, ray: &PreparedRay) -> Self {
         let slack = slack(ray.ray().t_min);
         Self {
             nodes: tree.nodes,
             references: tree.references,
             slack,
-            next: Segment::whole(&tree.bounds, ray, slack),
+            next: Segment::within(bounds, node, ray, slack),
             waiting: Waiting::new(),
         }
     }

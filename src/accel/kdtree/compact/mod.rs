@@ -19,11 +19,11 @@ pub use traverse::CompactKdTraversal;
 use self::node::{Kind, kind};
 use super::{Options, Side, build, form::Form};
 use crate::{
-    accel::{Accelerator, Cell, Hierarchy, Inside, Leaf, leaf::References},
+    accel::{Accelerator, Cell, Entries, Entry, Hierarchy, Inside, Leaf, leaf::References},
     arena::Arena,
     asset::{Asset, Stored},
     error::{BuildError, Error},
-    geometry::{Aabb, Lattice, PreparedRay},
+    geometry::{Aabb, Bundle, Lattice, PreparedRay},
     primitives::Primitives,
 };
 
@@ -130,6 +130,16 @@ impl<'a> Accelerator for CompactKdTree<'a> {
     #[inline]
     fn traverse(&self, ray: &PreparedRay) -> CompactKdTraversal<'a> {
         CompactKdTraversal::new(self, ray)
+    }
+
+    /// One entry: a second one costs each ray more than it spares.
+    fn enter(&self, bundle: &Bundle) -> Entries {
+        Entries::find(self, bundle, 1)
+    }
+
+    #[inline]
+    fn traverse_from(&self, entry: &Entry, ray: &PreparedRay) -> CompactKdTraversal<'a> {
+        CompactKdTraversal::within(self, entry, ray)
     }
 }
 

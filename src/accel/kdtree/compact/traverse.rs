@@ -1,13 +1,13 @@
 use super::{CompactKdTree, node::Node};
 use crate::{
     accel::{
-        Leaf, Step, Traversal,
+        Entry, Leaf, Step, Traversal,
         kdtree::MAX_DEPTH,
         leaf::References,
         segment::{Segment, Waiting},
         slope::Slopes,
     },
-    geometry::{PreparedRay, beyond},
+    geometry::{PreparedRay, beyond, slack},
     math::{greatest, least},
 };
 
@@ -25,6 +25,16 @@ pub struct CompactKdTraversal<'a> {
 }
 
 impl<'a> CompactKdTraversal<'a> {
+    /// From an entry: its planes are those of the float arithmetic, whose interval the slopes' contains.
+    #[inline]
+    pub(super) fn within(tree: &CompactKdTree<'a>, entry: &Entry, ray: &PreparedRay) -> Self {
+        let mut walk = Self::new(tree, ray);
+        if walk.next.is_some() {
+            walk.next = Segment::within(&entry.bounds, entry.node, ray, slack(ray.ray().t_min));
+        }
+        walk
+    }
+
     #[inline]
     pub(super) fn new(tree: &CompactKdTree<'a>, ray: &PreparedRay) -> Self {
         let (slopes, next) = Slopes::new(ray, &tree.lattice, 1.0);

@@ -1,0 +1,38 @@
+use glam::Vec3;
+
+use super::{Caster, Renderer, Tile};
+use crate::accel::Entries;
+
+/// A tile of a picture, with where in the scene its rays may begin.
+///
+/// Looked for once, for all rays of the tile; where they meet nothing, none of them is walked. The smaller the tile, the
+/// nearer to its end a walk begins: 8 x 8 pixels are a good size.
+///
+/// ```
+/// use hitscan::{List, Mesh, Scene, glam::Vec3, render::{Camera, Renderer, Tile}};
+/// let vertices = [Vec3::new(-1.0, -1.0, 0.0), Vec3::new(1.0, -1.0, 0.0), Vec3::Y];
+/// let mesh = Mesh::new(&vertices, &[[0_u16, 1, 2]])?;
+/// let scene = Scene::new(List::new(&mesh)?, &mesh)?;
+/// let renderer = Renderer::new(&scene, Camera::framing(&scene.bounds(), Vec3::Z, Vec3::Y), 64, 48);
+/// let patch = renderer.patch(Tile { x: 24, y: 16, width: 8, height: 8 });
+/// assert_eq!(patch.pixel(25, 17), renderer.pixel(25, 17));
+/// # Ok::<(), hitscan::Error>(())
+/// ```
+#[derive(Debug)]
+pub struct Patch<'a, S: ?Sized> {
+    renderer: Renderer<'a, S>,
+    /// None if each ray begins with everything.
+    entries: Option<Entries>,
+}
+
+impl<'a, S: Caster + ?Sized> Patch<'a, S> {
+    pub(super) fn new(renderer: Renderer<'a, S>, tile: &Tile) -> Self {
+        Self { renderer, entries: renderer.bundle(tile).map(|bundle| renderer.scene.enter(&bundle)) }
+    }
+
+    /// The linear colour of a pixel of the tile, as [`Renderer::pixel`].
+    #[must_use]
+    pub fn pixel(&self, x: u32, y: u32) -> Vec3 {
+        self.renderer.pixel_from(self.entries.as_ref(), x, y)
+    }
+}

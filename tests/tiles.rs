@@ -1,0 +1,257 @@
+//! Tiles: rays that begin where those of their tile may find what they find from the beginning.
+#![cfg(feature = "alloc")]
+#![allow(missing_docs)]
+
+mod common;
+
+use common::{Random, adversarial_mesh, bits, coordinate, plans, point};
+use hitscan::{
+    List, Mesh, Ray, Scene,
+    accel::{Accelerator, Plan, Structure},
+    bake,
+    geometry::{Aabb, Bundle},
+    glam::Vec3,
+    primitives::{Primitives, from_fn},
+    render::{Camera, Renderer, Tile},
+};
+
+/// Cameras inside, near and far, along axes and not, with and without perspective, and some that see nothing.
+fn camera(random: &mut Random, family: usize, vertices: &[Vec3]) -> Camera {
+    let eye = match random.below(4) {
+        0 => random.pick(vertices),
+        1 => point(random, family),
+        2 => point(random, family) * random.pick(&[1.0, 3.0, 100.0, 1.0e6]),
+        _ => {
+            let mut eye = random.pick(vertices);
+            eye[random.below(3)] = coordinate(random, family);
+            eye
+        }
+    };
+    let mut target = random.pick(vertices);
+    if random.one_in(3) {
+        // Along an axis.
+        let axis = random.below(3);
+        target = eye;
+        target[axis] += random.pick(&[1.0, -1.0]);
+    }
+    let up = random.pick(&[Vec3::Y, Vec3::X, Vec3::Z, Vec3::new(0.3, 1.0, -0.2), Vec3::new(1.0e-30, 1.0, 0.0)]);
+    if random.one_in(3) {
+        Camera::orthographic(eye, target, up, random.pick(&[1.0, 4.0, 0.0, 1.0e6, 1.0e-6]))
+    } else {
+        Camera::pinhole(eye, target, up, random.pick(&[0.8, 0.05, 2.5, 1.0e-4, 3.1]))
+    }
+}
+
+fn same<A: Accelerator, P: Primitives>(scene: &Scene<A, P>, camera: &Camera, tile: &Tile, side: u32, what: &str) {
+    let Some(bundle) = camera.bundle(tile, side, side) else { return };
+    let entries = scene.enter(&bundle);
+    for (x, y) in tile.pixels() {
+        for (dx, dy) in [(0.5, 0.5), (0.0, 0.0), (1.0, 0.3), (0.125, 1.0)] {
+            let ray = camera.ray(x as f32 + dx, y as f32 + dy, side, side);
+            let (from, plain) = (scene.closest_hit_from(&entries, &ray), scene.closest_hit(&ray));
+            assert_eq!(bits(from), bits(plain), "{what}: {ray:?} of {tile:?}, {entries:?}");
+        }
+    }
+}
+
+#[test]
+fn entries_hold_all_that_a_tile_can_meet() {
+    let mut random = Random::new(41);
+    let mut hits = 0;
+    for round in 0..150 {
+        let family = round % common::FAMILIES;
+        let (vertices, triangles) = adversarial_mesh(&mut random, family, 80);
+        let mesh = Mesh::new(&vertices, triangles.as_slice()).unwrap();
+        for (name, plan) in plans::presets() {
+            let words = bake::build(&mesh, &plan).unwrap();
+            let scene = Scene::new(Structure::open(plan.kind().unwrap(), &words).unwrap(), &mesh).unwrap();
+            for _ in 0..4 {
+                let camera = camera(&mut random, family, &vertices);
+                let side = random.pick(&[1, 7, 64, 240]);
+                let at = |random: &mut Random| random.below(side as usize) as u32;
+                let (x, y) = if random.one_in(2) { (side / 2, side / 2) } else { (at(&mut random), at(&mut random)) };
+                let tile = Tile { x, y, width: 4.min(side - x), height: 4.min(side - y) };
+                same(&scene, &camera, &tile, side, name);
+                let ray = camera.ray(x as f32, y as f32, side, side);
+                hits += u32::from(scene.any_hit(&ray));
+            }
+        }
+    }
+    assert!(hits > 1_000, "{hits}");
+}
+
+#[test]
+fn shapes_that_are_not_certified_keep_their_hits() {
+    let mut random = Random::new(42);
+    for round in 0..60 {
+        let family = round % common::FAMILIES;
+        let boxes: Vec<Aabb> = (0..40).map(|_| common::boxed(&mut random, family)).collect();
+        let shapes = from_fn(
+            boxes.len() as u32,
+            |i| boxes[i as usize],
+            |i, ray: &Ray| {
+                let t = common::noise(i, ray);
+                t.is_finite().then_some(t)
+            },
+        );
+        let vertices: Vec<Vec3> = boxes.iter().flat_map(|bounds| [bounds.min, bounds.max]).collect();
+        for (name, plan) in plans::presets() {
+            let words = bake::build(&shapes, &plan).unwrap();
+            let scene = Scene::new(Structure::open(plan.kind().unwrap(), &words).unwrap(), &shapes).unwrap();
+            let camera = camera(&mut random, family, &vertices);
+            for tile in [Tile { x: 14, y: 14, width: 4, height: 4 }, Tile { x: 3, y: 20, width: 8, height: 2 }] {
+                same(&scene, &camera, &tile, 32, name);
+            }
+        }
+    }
+}
+
+/// Any rays, not only a camera's: between those given, coordinate by coordinate.
+#[test]
+fn bundles_bound_all_rays_between() {
+    let mut random = Random::new(43);
+    let (mut met, mut missed) = (0, 0);
+    for round in 0..200_000 {
+        let family = round % common::FAMILIES;
+        let corner = |random: &mut Random| {
+            let direction = match random.below(3) {
+                0 => point(random, 4),
+                1 => point(random, 2),
+                _ => Vec3::from_array([0; 3].map(|_| random.below(3) as f32 - 1.0)),
+            };
+            Ray::new(point(random, family), direction).starting_at(random.pick(&[0.0, 0.0, 1.0]))
+        };
+        let (a, b) = (corner(&mut random), corner(&mut random));
+        let b = if random.one_in(2) { Ray { origin: a.origin, ..b } } else { b };
+        let b = if random.one_in(2) { Ray { direction: a.direction * (1.0 + random.unit()), ..b } } else { b };
+        let bundle = Bundle::around([a, b]).unwrap();
+        let bounds = common::boxed(&mut random, family);
+        let entry = bundle.entry(&bounds);
+        for _ in 0..4 {
+            let mix = |random: &mut Random, a: Vec3, b: Vec3| {
+                let pick = |random: &mut Random, a: f32, b: f32| {
+                    let between = a + (b - a) * random.unit();
+                    random.pick(&[a, b, between.clamp(a.min(b), a.max(b))])
+                };
+                Vec3::new(pick(random, a.x, b.x), pick(random, a.y, b.y), pick(random, a.z, b.z))
+            };
+            let ray = Ray::new(mix(&mut random, a.origin, b.origin), mix(&mut random, a.direction, b.direction));
+            let Some(prepared) = ray.starting_at(a.t_min.min(b.t_min)).prepare() else { continue };
+            let Some((enter, exit)) = bounds.interval(&prepared) else { continue };
+            if enter.max(prepared.ray().t_min) > exit {
+                missed += 1;
+                continue;
+            }
+            met += 1;
+            let earliest = entry.unwrap_or_else(|| panic!("{ray:?} meets {bounds:?}, {bundle:?} does not"));
+            assert!(earliest <= enter.max(prepared.ray().t_min), "{ray:?} enters {bounds:?} before {earliest}");
+        }
+    }
+    assert!(met > 20_000 && missed > 1_000, "{met} {missed}");
+}
+
+#[test]
+fn rays_without_numbers_are_no_bundle() {
+    let good = Ray::new(Vec3::ZERO, Vec3::Z);
+    assert!(Bundle::around([]).is_none());
+    assert!(Bundle::around([good]).is_some());
+    assert!(Bundle::around([good, good.starting_at(-1.0)]).is_none());
+    for bad in [f32::NAN, f32::INFINITY] {
+        assert!(Bundle::around([good, Ray::new(Vec3::new(0.0, bad, 0.0), Vec3::Z)]).is_none());
+        assert!(Bundle::around([Ray::new(Vec3::ZERO, Vec3::splat(bad)), good]).is_none());
+        assert!(Bundle::around([good.starting_at(bad)]).is_none());
+    }
+}
+
+/// Empty tiles are told, and tiles before a surface begin with less than everything.
+#[test]
+fn entries_are_few_and_small() {
+    let (vertices, triangles) = common::meshes::sheet(40);
+    let mesh = Mesh::new(&vertices, triangles.as_slice()).unwrap();
+    for plan in [
+        Plan::KdTree(Default::default()),
+        Plan::CompactKdTree(Default::default()),
+        Plan::Bvh(Default::default()),
+        Plan::DualSplit(Default::default()),
+    ] {
+        let words = bake::build(&mesh, &plan).unwrap();
+        let scene = Scene::new(Structure::open(plan.kind().unwrap(), &words).unwrap(), &mesh).unwrap();
+        let renderer = Renderer::new(&scene, Camera::framing(&scene.bounds(), Vec3::Z, Vec3::Y), 128, 128);
+        let (mut empty, mut part, mut tiles) = (0, 0.0_f32, 0);
+        for tile in renderer.tiles(8, 8) {
+            let camera = Camera::framing(&scene.bounds(), Vec3::Z, Vec3::Y);
+            let entries = scene.enter(&camera.bundle(&tile, 128, 128).unwrap());
+            empty += u32::from(entries.is_empty());
+            tiles += u32::from(!entries.is_empty());
+            part += entries.iter().map(|entry| entry.bounds.half_area()).sum::<f32>() / scene.bounds().half_area();
+        }
+        assert!(empty > 100, "{plan:?}: {empty} tiles are empty");
+        let part = part / tiles as f32;
+        assert!(part < 0.8, "{plan:?}: walks begin with {part}");
+    }
+}
+
+#[test]
+fn pictures_in_parts_are_the_picture() {
+    let mut random = Random::new(44);
+    let (vertices, triangles) = adversarial_mesh(&mut random, 2, 60);
+    let mesh = Mesh::new(&vertices, triangles.as_slice()).unwrap();
+    let words = bake::build(&mesh, &Plan::KdTree(Default::default())).unwrap();
+    let scene = Scene::new(Structure::open(hitscan::asset::Kind::KdTree, &words).unwrap(), &mesh).unwrap();
+    for (width, height) in [(1, 1), (9, 70), (130, 67), (64, 64), (0, 5), (5, 0)] {
+        let camera = Camera::framing(&scene.bounds(), Vec3::new(0.3, 0.2, 1.0), Vec3::Y);
+        let renderer = Renderer::new(&scene, camera, width, height).with_samples(2).with_bounces(1);
+        let plain: Vec<Vec3> = Tile { x: 0, y: 0, width, height }.pixels().map(|(x, y)| renderer.pixel(x, y)).collect();
+
+        let mut filled = vec![Vec3::NAN; plain.len()];
+        renderer.fill(Tile { x: 0, y: 0, width, height }, &mut filled).unwrap();
+        assert_eq!(filled, plain);
+
+        let (mut blocks, mut computed, mut drawn) = (vec![Vec3::NAN; plain.len()], vec![0; plain.len()], 0);
+        let mut picture = renderer.progressive();
+        loop {
+            let budget = random.below(40) as u32;
+            let mut taken = 0;
+            let more = picture.step(budget, |block, light| {
+                taken += 1;
+                computed[(block.y * width + block.x) as usize] += 1;
+                block.pixels().for_each(|(x, y)| blocks[(y * width + x) as usize] = light);
+            });
+            assert!(taken <= budget);
+            drawn += taken as usize;
+            // The first blocks cover the picture.
+            if drawn >= (width.div_ceil(8) * height.div_ceil(8)) as usize {
+                assert!(blocks.iter().all(|light| light.is_finite()));
+            }
+            if !more {
+                break;
+            }
+        }
+        assert_eq!(blocks, plain);
+        assert!(computed.iter().all(|&times| times == 1));
+    }
+}
+
+/// What moves changes only tiles that may show it.
+#[test]
+fn tiles_that_show_nothing_of_a_change_stay_as_they_are() {
+    let vertices = |x: f32| [Vec3::ZERO, Vec3::X, Vec3::Y].map(|v| v + Vec3::new(x, 0.0, 0.0));
+    let still = [Vec3::new(-3.0, -3.0, -1.0), Vec3::new(3.0, -3.0, -1.0), Vec3::new(0.0, 4.0, -1.0)];
+    let frames = [0.0, 0.4].map(|x| [vertices(x), still].concat());
+    let meshes = [0, 1].map(|i| Mesh::new(&frames[i], &[[0_u16, 1, 2], [3, 4, 5]]).unwrap());
+    let scenes = [0, 1].map(|i| Scene::new(List::new(&meshes[i]).unwrap(), meshes[i]).unwrap());
+    let camera = Camera::pinhole(Vec3::new(0.0, 0.0, 6.0), Vec3::ZERO, Vec3::Y, 0.9);
+    let renderers = [0, 1].map(|i| Renderer::new(&scenes[i], camera, 96, 96));
+    let moved = meshes[0].bounds(0).union(&meshes[1].bounds(0));
+    let (mut dirty, mut clean) = (0, 0);
+    for tile in renderers[0].tiles(8, 8) {
+        if renderers[0].may_show(&tile, &moved) {
+            dirty += 1;
+            continue;
+        }
+        clean += 1;
+        let [before, after] = [0, 1].map(|i| renderers[i].colors::<[u8; 3]>(tile).collect::<Vec<_>>());
+        assert_eq!(before, after, "{tile:?}");
+    }
+    assert!(dirty < 20 && clean > 100, "{dirty} {clean}");
+}
