@@ -110,7 +110,7 @@ const ONE_BY_ONE: bool = cfg!(any(test, target_pointer_width = "32"));
 /// Whether the ray, at 0, passes all corners on the same side, which no other coordinate can make up for.
 ///
 /// A coordinate is off by at most `2 u` of itself and `5 u` of slope times depth, and what underflow takes; `error` is more
-/// than `8 u` of slope times all depths, and 2^-125.
+/// than `8 u` of slope times all depths, and 2^-61: the lifted error itself may underflow.
 #[inline(always)]
 fn is_beside([a, b, c]: [f32; 3], error: f32) -> bool {
     if a > error { (b > error) & (c > error) } else { (a < -error) & (b < -error) & (c < -error) }
@@ -129,7 +129,7 @@ pub(super) fn edges(s: &Sheared) -> [f32; 3] {
 #[inline(always)]
 pub(super) fn test(corners: [impl Corner; 3], ray: &PreparedRay) -> Verdict {
     let lifted = |[az, bz, cz]: [f32; 3]| ray.shear.error * ((az.abs() + bz.abs()) + cz.abs());
-    let leave = |x, z| ONE_BY_ONE && is_beside(x, lifted(z) * LIFT + UNDERFLOW);
+    let leave = |x, z| ONE_BY_ONE && is_beside(x, (lifted(z) + UNDERFLOW) * LIFT);
     let Some(s) = shear(corners, ray, leave) else { return Verdict::Miss };
     let [u, v, w] = edges(&s);
     let ([ax, bx, cx], [ay, by, cy]) = (s.x, s.y);
