@@ -98,9 +98,9 @@ fn knots(out: &Path, options: &Options, (along, around): (u16, u16)) -> Result<S
         let mut memory = vec![0; (build.words)(mesh.len() as usize)];
         let words = (build.build)(&mesh, &mut Arena::new(&mut memory));
         let words = words.map_err(|error| format!("{}: {error}", build.name))?;
-        hashes.push(Hash::of(words.iter().copied()));
+        hashes.push((build.name, Hash::of(words.iter().copied())));
     }
-    writeln!(code, "/// The words of [`BUILDS`].\npub const HASHES: [Hash; BUILDS.len()] = {hashes:?};")?;
+    writeln!(code, "/// The words of what is built, by its name.\npub const HASHES: &[(&str, Hash)] = &{hashes:?};")?;
     Ok(code)
 }
 

@@ -7,7 +7,7 @@ use hitscan::{
     primitives::LatticeTriangles,
 };
 
-use crate::{Answer, builds::BUILDS, hash::Hash};
+use crate::{Answer, hash::Hash};
 
 /// An asset, and what the host found in it.
 #[derive(Clone, Copy, Debug)]

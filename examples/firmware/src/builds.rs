@@ -1,8 +1,7 @@
 //! What is built on the device.
 
 use hitscan::{
-    Arena, Bvh, CompactKdTree, DualSplit, Grid, KdTree, Mesh, Octree, bvh, dualsplit, error::BuildError, grid, kdtree,
-    octree,
+    Arena, Bvh, DualSplit, Grid, KdTree, Mesh, Octree, bvh, dualsplit, error::BuildError, grid, kdtree, octree,
 };
 
 /// A structure and the options for it.
@@ -20,22 +19,23 @@ pub struct Build {
 type Builder = for<'m> fn(&Mesh<'_>, &mut Arena<'m>) -> Result<&'m [u32], BuildError>;
 
 macro_rules! builds {
-    ($($name:literal: $structure:ident by $options:expr,)*) => {
-        [$(Build {
+    ($($(#[$condition:meta])? $name:literal: $structure:ty => $options:expr,)*) => {
+        &[$($(#[$condition])? Build {
             name: $name,
-            words: |triangles| $structure::words(triangles, &$options),
-            build: |mesh, arena| Ok($structure::build(mesh, arena, &$options)?.as_words()),
+            words: |triangles| <$structure>::words(triangles, &$options),
+            build: |mesh, arena| Ok(<$structure>::build(mesh, arena, &$options)?.as_words()),
         },)*]
     };
 }
 
-/// The quickest first, then those with the fewest bytes.
-pub const BUILDS: [Build; 7] = builds! {
-    "grid-quick": Grid by grid::Options::quick(),
-    "dual-split-quick": DualSplit by dualsplit::Options::quick(),
-    "dual-split": DualSplit by dualsplit::Options::small(),
-    "bvh": Bvh by bvh::Options::small(),
-    "octree": Octree by octree::Options::small(),
-    "kdtree": KdTree by kdtree::Options::small(),
-    "kdtree-compact": CompactKdTree by kdtree::Options::small(),
+/// The quickest first, then those with the fewest bytes; a micro:bit has no flash for all of their builders.
+pub const BUILDS: &[Build] = builds! {
+    "grid-quick": Grid => grid::Options::quick(),
+    "dual-split-quick": DualSplit => dualsplit::Options::quick(),
+    "dual-split": DualSplit => dualsplit::Options::small(),
+    "bvh": Bvh => bvh::Options::small(),
+    "octree": Octree => octree::Options::small(),
+    "kdtree": KdTree => kdtree::Options::small(),
+    #[cfg(not(small))]
+    "kdtree-compact": hitscan::CompactKdTree => kdtree::Options::small(),
 };

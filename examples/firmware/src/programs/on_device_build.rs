@@ -27,8 +27,8 @@ pub fn run(board: &mut Board) -> bool {
     let mut arena = Arena::new(board.memory);
     // What one frame took is free again in the next.
     let mut same = true;
-    for (build, host) in BUILDS.iter().zip(HASHES) {
-        same &= arena.frame(|arena| built(build, &mesh, arena, &board.counter, host));
+    for build in BUILDS {
+        same &= arena.frame(|arena| built(build, &mesh, arena, &board.counter));
     }
     let moved = obstacle(&mesh, board.memory, &board.counter);
     same && moved.unwrap_or_else(|error| {
@@ -38,7 +38,7 @@ pub fn run(board: &mut Board) -> bool {
 }
 
 /// Builds one structure; whether its words are the host's, or it does not fit.
-fn built(build: &Build, mesh: &Mesh, arena: &mut Arena, counter: &Counter, host: Hash) -> bool {
+fn built(build: &Build, mesh: &Mesh, arena: &mut Arena, counter: &Counter) -> bool {
     let name = build.name;
     let (mut words, mut instructions) = (None, 0);
     let stack = stack_of(&mut || {
@@ -52,7 +52,7 @@ fn built(build: &Build, mesh: &Mesh, arena: &mut Arena, counter: &Counter, host:
             );
             figure("build", name, instructions);
             figure("build_stack", name, stack as u64);
-            Hash::of(words.iter().copied()) == host
+            HASHES.contains(&(name, Hash::of(words.iter().copied())))
         }
         Some(Err(BuildError::Full(full))) => {
             println!("{name:16} {full}");
