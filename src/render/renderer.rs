@@ -204,7 +204,7 @@ impl<'a, S: Caster + ?Sized> Renderer<'a, S> {
     /// let scene = Scene::new(List::new(&mesh)?, &mesh)?;
     /// let camera = Camera::pinhole(Vec3::new(0.0, 0.0, 5.0), Vec3::ZERO, Vec3::Y, 0.8);
     /// let renderer = Renderer::new(&scene, camera, 64, 64);
-    /// let moved = Aabb::new(Vec3::ZERO, Vec3::splat(0.5));
+    /// let moved = Aabb::new(Vec3::splat(0.1), Vec3::splat(0.5));
     /// assert_eq!(renderer.tiles(8, 8).filter(|tile| renderer.may_show(tile, &moved)).count(), 4);
     /// # Ok::<(), hitscan::Error>(())
     /// ```
