@@ -41,7 +41,7 @@ fn lattice(indices: Indices<'_>) {
     if let Ok(mesh) = LatticeMesh::new(&aabb(), numbers, indices) {
         black_box(mesh.positions().last());
         with(&mesh);
-        whole(List::new(&mesh), &mesh);
+        whole(List::new(&mesh), mesh);
         let mut memory = [0; 1024];
         let mut arena = Arena::new(black_box(memory.as_mut_slice()));
         match Structure::build(&mesh, &mut arena, &plan::any()) {
