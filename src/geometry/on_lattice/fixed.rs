@@ -93,8 +93,13 @@ pub(super) const fn reciprocal(x: i32) -> i32 {
 mod tests {
     use super::*;
 
+    /// 2 to the power of `exponent`, exactly.
+    fn power(exponent: i32) -> f64 {
+        f64::from_bits(u64::from((exponent.max(-1000) + 1023) as u32) << 52)
+    }
+
     fn value(x: Scaled) -> f64 {
-        f64::from(x.mantissa) * 2.0_f64.powi(x.exponent.max(-1000))
+        f64::from(x.mantissa) * power(x.exponent)
     }
 
     #[test]
@@ -107,7 +112,7 @@ mod tests {
                 for factor in [1.0, 1.999, 3.0e-9, 65_535.0] {
                     let product = scaled.times(Scaled::new(factor));
                     let exact = value(scaled) * f64::from(factor);
-                    assert!((value(product) - exact).abs() <= exact.abs() * 2.0_f64.powi(-28), "{x} {factor}");
+                    assert!((value(product) - exact).abs() <= exact.abs() * power(-28), "{x} {factor}");
                     assert!(product.mantissa == 0 || product.mantissa.unsigned_abs() >= 1 << 30, "{product:?}");
                 }
                 let floor = (f64::from(x) * 256.0).floor().clamp(-f64::from(i32::MAX), f64::from(i32::MAX));
@@ -121,8 +126,8 @@ mod tests {
     #[test]
     fn reciprocals_have_28_bits() {
         for x in (1 << 30..=i32::MAX as u32).step_by(3331) {
-            let exact = 2.0_f64.powi(61) / f64::from(x);
-            assert!((f64::from(reciprocal(x as i32)) - exact).abs() < exact * 2.0_f64.powi(-28), "{x}");
+            let exact = power(61) / f64::from(x);
+            assert!((f64::from(reciprocal(x as i32)) - exact).abs() < exact * power(-28), "{x}");
         }
     }
 }
