@@ -7,7 +7,7 @@ use std::{
 
 use hitscan::{
     Primitives, parallel,
-    primitives::Spheres,
+    primitives::{Smooth, Spheres},
     render::{Camera, Caster, Materials, Renderer, Terms},
 };
 
@@ -17,7 +17,7 @@ use crate::{
     output::{self, write_atomically},
     picture::{preview, write_png},
     progress::Progress,
-    scene::{Built, Palette, Smooth, Source, StructureArgs, View, builtin::BuiltIn},
+    scene::{Built, Palette, Source, StructureArgs, View, builtin::BuiltIn, normals_by_place},
     stage::{CameraArg, Counted, DEPTHS, Grounded, Lighting, Tally, Up, Viewpoint, glazed, plate},
     units::{Size, count, seconds},
 };
@@ -134,7 +134,7 @@ impl Render {
         let source = Source::load(path)?;
         let view = source.view(path)?;
         let built = view.build(self.structure.structure, self.structure.preset)?;
-        let normals = if self.smooth { Smooth::normals(&view.mesh) } else { Vec::new() };
+        let normals = if self.smooth { normals_by_place(&view.mesh) } else { Vec::new() };
         let shaded = Smooth::new(view.mesh, &normals);
         let renumbered = view.renumbered(shaded)?;
         let scene = match &renumbered {
