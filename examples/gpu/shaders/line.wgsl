@@ -9,8 +9,11 @@ const TINY = 7.888609e-31;
 // 2^100: farther than any hit.
 const FAR = 1.2676506e30;
 
-// 2^90: the reciprocal along an axis where a direction is 0.
-const STEEP = 1.2379401e27;
+// Along an axis where a direction is 0, planes so many parts of all distances apart are as far apart as the line is long.
+const STEEP = 524288.0;
+
+// 2^-20: distances below are not told apart there.
+const FINE = 9.5367432e-7;
 
 // The bits of 2^30, 2^-40, 2^40 and 2^-60: coordinates, largest and other components of directions that are calculated
 // with. No product here overflows, and what vanishes is covered by TINY.
@@ -24,9 +27,9 @@ const INFINITE = 0x7f800000u;
 struct Line {
     origin: vec3<f32>,
     direction: vec3<f32>,
-    // One over the direction; 0 where its sign is not known.
+    // One over the direction; 0 where its sign is not known, and 1 where it is 0.
     inverse: vec3<f32>,
-    // By how much of itself the inverse may be off besides rounding; FAR where the sign is not known.
+    // By how much of itself the inverse may be off besides rounding; FAR where the sign is not known, -1 where it is 0.
     vague: vec3<f32>,
     // By how much the origin may be off.
     off: vec3<f32>,
@@ -67,7 +70,8 @@ fn line(origin: vec3<f32>, direction: vec3<f32>, off: vec3<f32>, error: vec3<f32
     let far_out = max(max(magnitude(origin.x), magnitude(origin.y)), magnitude(origin.z));
     let size = vec3(magnitude(direction.x), magnitude(direction.y), magnitude(direction.z));
     let largest = max(max(size.x, size.y), size.z);
-    result.usable = far_out <= COORDINATES && largest >= SHORTEST && largest <= LONGEST;
+    let lost = max(max(magnitude(off.x), magnitude(off.y)), magnitude(off.z));
+    result.usable = max(far_out, lost) <= COORDINATES && largest >= SHORTEST && largest <= LONGEST;
     if !result.usable {
         return result;
     }
@@ -76,9 +80,8 @@ fn line(origin: vec3<f32>, direction: vec3<f32>, off: vec3<f32>, error: vec3<f32
         let bits = magnitude(d);
         let uncertain = of_axis(error, axis);
         if bits == 0u && uncertain == 0.0 {
-            // Closed containment, but for the margin.
-            result.inverse[axis] = STEEP;
-            result.vague[axis] = 0.0;
+            result.inverse[axis] = 1.0;
+            result.vague[axis] = -1.0;
         } else if bits < FLATTEST || abs(d) <= 4.0 * uncertain {
             // Vanishing ones are for who has infinities; unknown ones decide nothing.
             result.usable = result.usable && uncertain != 0.0;
@@ -115,13 +118,20 @@ struct Planes {
 
 // Of planes at `low + number * step`, in a box that ends at `high`; by position if the step is 1 and `low` counts as 0.
 fn planes(line: Line, start: vec3<f32>, step: vec3<f32>, low: vec3<f32>, high: vec3<f32>) -> Planes {
-    let size = abs(line.inverse);
     let reach = abs(line.origin) + max(abs(low), abs(high)) + (high - low);
+    // Nothing in the box is farther. Where the direction is 0, what is before the origin ends before 0, and what is behind
+    // begins behind all that counts: closed containment, but for the margin.
+    let longest = 2.0 * of_axis(reach, line.major) * abs(line.along);
+    let level = line.vague < vec3(0.0);
+    let steep = longest * STEEP / max(reach + line.off * STEEP, vec3(FINE));
+    let inverse = select(line.inverse, steep, level);
+    let vague = clamp(line.vague, vec3(0.0), vec3(1.0));
     // 20 roundings at most, each of something within reach.
-    let margin = size * (reach * (32.0 * EPSILON + min(line.vague, vec3(1.0))) + 2.0 * line.off + TINY) + TINY;
-    let base = (start - line.origin) * line.inverse;
+    let margin = abs(inverse) * (reach * (32.0 * EPSILON + vague) + 2.0 * line.off + TINY)
+        + select(vec3(TINY), vec3(2.0 * longest), level);
+    let base = (start - line.origin) * inverse;
     let unknown = line.vague >= vec3(1.0);
     let enter = select(base - margin, vec3(-FAR), unknown);
     let leave = select(base + margin, vec3(FAR), unknown);
-    return Planes(line.inverse * step, enter, leave);
+    return Planes(inverse * step, enter, leave);
 }
