@@ -31,8 +31,9 @@ struct Line {
     inverse: vec3<f32>,
     // By how much of itself the inverse may be off besides rounding; FAR where the sign is not known, -1 where it is 0.
     vague: vec3<f32>,
-    // By how much the origin may be off.
+    // By how much the origin and the direction may be off.
     off: vec3<f32>,
+    error: vec3<f32>,
     // A bit per axis along which it falls.
     descending: u32,
     // The axis along which it is fastest, and the direction along the other two over that.
@@ -67,6 +68,7 @@ fn line(origin: vec3<f32>, direction: vec3<f32>, off: vec3<f32>, error: vec3<f32
     result.origin = origin;
     result.direction = direction;
     result.off = off;
+    result.error = error;
     let far_out = max(max(magnitude(origin.x), magnitude(origin.y)), magnitude(origin.z));
     let size = vec3(magnitude(direction.x), magnitude(direction.y), magnitude(direction.z));
     let largest = max(max(size.x, size.y), size.z);
