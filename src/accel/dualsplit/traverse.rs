@@ -6,7 +6,7 @@ use crate::{
         segment::{Segment, Waiting},
         slope::Slopes,
     },
-    geometry::{PreparedRay, beyond, slack},
+    geometry::{PreparedRay, beyond},
     math::{greatest, least},
 };
 
@@ -28,7 +28,7 @@ impl<'a> DualSplitTraversal<'a> {
     pub(super) fn within(tree: &DualSplit<'a>, entry: &Entry, ray: &PreparedRay) -> Self {
         let mut walk = Self::new(tree, ray);
         if walk.next.is_some() {
-            walk.next = Segment::within(&entry.bounds, entry.node, ray, slack(ray.ray().t_min));
+            walk.next = Segment::of_entry(entry, ray);
         }
         walk
     }
