@@ -6,7 +6,7 @@ use crate::{
         segment::{Segment, Waiting},
         slope::Slopes,
     },
-    geometry::{PreparedRay, beyond, slack},
+    geometry::{PreparedRay, beyond},
     math::{greatest, least},
 };
 
@@ -28,7 +28,7 @@ impl<'a> DualSplitTraversal<'a> {
     pub(super) fn within(tree: &DualSplit<'a>, entry: &Entry, ray: &PreparedRay) -> Self {
         let mut walk = Self::new(tree, ray);
         if walk.next.is_some() {
-            walk.next = Segment::within(&entry.bounds, entry.node, ray, slack(ray.ray().t_min));
+            walk.next = Segment::of_entry(entry, ray);
         }
         walk
     }
@@ -89,19 +89,20 @@ impl<'a> DualSplitTraversal<'a> {
             }
             // The near child ends at the plane in the lower half, the far one begins at the upper.
             let descended = head.is_descended(ray.descending);
-            let (planes, near, far) =
-                if descended { (planes.rotate_left(16), head.right(), child) } else { (planes, child, head.right()) };
+            let planes = if descended { planes.rotate_left(16) } else { planes };
+            let near = || if descended { head.right() } else { child };
+            let far = || if descended { child } else { head.right() };
             let exit = slope.exit(planes & 0xffff);
             if exit < cell.enter {
                 // The far child: as nearly all rays that miss the near one meet it, its plane need not be looked at.
-                cell.node = far;
+                cell.node = far();
                 continue;
             }
             let entry = slope.entry(planes >> 16);
             if !(entry > cell.exit) {
-                self.waiting.push(Segment { node: far, enter: greatest(entry, cell.enter), exit: cell.exit });
+                self.waiting.push(Segment { node: far(), enter: greatest(entry, cell.enter), exit: cell.exit });
             }
-            cell = Segment { node: near, enter: cell.enter, exit: least(exit, cell.exit) };
+            cell = Segment { node: near(), enter: cell.enter, exit: least(exit, cell.exit) };
         }
     }
 }
