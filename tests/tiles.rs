@@ -276,7 +276,11 @@ fn tiles_of_any_numbers_are_filled() {
                     (Some(x), Some(y)) if x < u32::MAX && y < u32::MAX => renderer.pixel(x, y),
                     _ => Vec3::NAN,
                 };
-                assert_eq!(light.to_array().map(f32::to_bits), expected.to_array().map(f32::to_bits), "{tile:?} {at:?}");
+                assert_eq!(
+                    light.to_array().map(f32::to_bits),
+                    expected.to_array().map(f32::to_bits),
+                    "{tile:?} {at:?}"
+                );
             }
         }
     }
