@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{FAMILIES, Random, adversarial_mesh, adversarial_ray, bits, boxed, noise, plans};
+use common::{FAMILIES, Random, adversarial_mesh, adversarial_ray, bits, boxed, noise, plans, rays, seed};
 use hitscan::{
     List, Mesh, Scene,
     accel::{Mailbox, Structure},
@@ -12,13 +12,9 @@ use hitscan::{
     glam::Vec3,
 };
 
-fn rays() -> usize {
-    std::env::var("HITSCAN_RAYS").ok().and_then(|n| n.parse().ok()).unwrap_or(1_000_000)
-}
-
 /// Casts rays at scenes of one kind of structure.
 fn compare(kind: usize, rays: usize) {
-    let mut random = Random::new(1 + kind as u64);
+    let mut random = Random::new(1 + kind as u64 + 100 * seed());
     let mut memory = vec![0; 1 << 16];
     let (mut cast, mut hits, mut words, mut scenes) = (0, 0, 0, 0);
     while cast < rays {
@@ -57,7 +53,7 @@ fn compare(kind: usize, rays: usize) {
 fn every_structure_answers_as_the_list() {
     std::thread::scope(|scope| {
         for kind in 0..plans::KINDS {
-            scope.spawn(move || compare(kind, rays() / 2));
+            scope.spawn(move || compare(kind, rays(1_000_000) / 2));
         }
     });
 }
