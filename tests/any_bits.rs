@@ -178,19 +178,27 @@ fn compare<P: Primitives>(primitives: &P, plan: &Plan, rays: &[Ray]) -> Result<(
     Ok(())
 }
 
+fn config() -> ProptestConfig {
+    let usual = ProptestConfig::default();
+    ProptestConfig { cases: usual.cases.max(4096), failure_persistence: None, ..usual }
+}
+
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(config())]
 
     #[test]
     fn meshes_and_spheres(
-        vertices in vec(prop_oneof![3 => place(), 1 => vector()], 1..20),
-        corners in vec(uniform3(0_u32..22), 0..20),
+        vertices in vec(prop_oneof![20 => place(), 1 => vector()], 1..20),
+        corners in vec(uniform3(any::<prop::sample::Index>()), 0..20),
+        beyond in prop_oneof![9 => Just(0), 1 => Just(1)],
         spheres in vec((place(), float()), 0..3),
         plan in plan(),
         rays in vec(ray(), 1..20),
         point in vector(),
         far in float(),
     ) {
+        let corners: Vec<[u32; 3]> =
+            corners.iter().map(|three| three.map(|corner| corner.index(vertices.len() + beyond) as u32)).collect();
         let spheres: Vec<Sphere> = spheres.into_iter().map(|(center, radius)| Sphere::new(center, radius)).collect();
         match Mesh::new(&vertices, &corners[..]) {
             Ok(mesh) => {
