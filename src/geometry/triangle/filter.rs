@@ -21,6 +21,13 @@ const TOLERANCE: f32 = 1.0 / 131_072.0;
 /// 2^-100: smaller magnitudes are left to the tiers with a wider range.
 const SMALL: f32 = 7.888_609e-31;
 
+/// Beyond these determinants cubes of lengths may leave the range of `f32`: 2^-20 and 2^60.
+const SMALL_AREA: f32 = 1.0 / 1_048_576.0;
+const LARGE_AREA: f32 = 1_152_921_504_606_846_976.0;
+
+/// By which lengths are then multiplied or divided, 2^40.
+const SCALE: f32 = 1_099_511_627_776.0;
+
 /// What `f32` can prove of the edge functions' signs.
 pub(super) enum Verdict {
     /// The ray misses.
@@ -32,6 +39,7 @@ pub(super) enum Verdict {
 }
 
 /// A hit, and what was found out on the way.
+#[derive(Clone, Copy)]
 pub(super) struct Certain {
     /// The edge functions.
     edges: [f32; 3],
@@ -39,6 +47,8 @@ pub(super) struct Certain {
     depths: [f32; 3],
     /// The sum of the sheared coordinates' magnitudes.
     spread: f32,
+    /// By what lengths were multiplied, a power of two; 1 at first.
+    scale: f32,
 }
 
 /// A corner where it lies, asked by axis.
@@ -146,19 +156,52 @@ pub(super) fn test(corners: [impl Corner; 3], ray: &PreparedRay) -> Verdict {
     } else {
         (u < -bound) & (v < -bound) & (w < -bound)
     };
-    if hit { Verdict::Hit(Certain { edges: [u, v, w], depths: s.z, spread }) } else { Verdict::Unproven }
+    if hit { Verdict::Hit(Certain { edges: [u, v, w], depths: s.z, spread, scale: 1.0 }) } else { Verdict::Unproven }
 }
 
 impl Certain {
     /// The crossing; none if it is proven to lie outside the limits, NaN for a parameter that `f32` cannot prove.
     ///
+    /// Cubes of lengths leave the range of `f32` long before lengths do. What is unproven therefore has a second chance with
+    /// all lengths multiplied by a power of two: so a scene of any scale is answered with the same bits.
+    ///
     /// Out of line: most triangles are missed, and the loop that tests them needs all registers.
     #[inline(never)]
-    pub(super) fn place(&self, ray: &PreparedRay, (t_min, t_max): (f32, f32)) -> Option<Crossing> {
-        let &Self { edges: [u, v, w], depths: [az, bz, cz], spread } = self;
+    pub(super) fn place(&self, ray: &PreparedRay, limits: (f32, f32)) -> Option<Crossing> {
+        let (mut certain, mut inverse) = (*self, ray.shear.inverse);
+        loop {
+            let (crossing, area) = certain.place_as_it_is(inverse, limits);
+            let scale = if area < SMALL_AREA {
+                SCALE
+            } else if area > LARGE_AREA {
+                1.0 / SCALE
+            } else {
+                return crossing;
+            };
+            if certain.scale != 1.0 || !crossing.is_some_and(|crossing| crossing.t.is_nan()) {
+                return crossing;
+            }
+            (certain, inverse) = (self.scaled(scale), inverse / scale);
+        }
+    }
+
+    /// The same for lengths that are `scale` times as long, a power of two.
+    #[inline(always)]
+    fn scaled(&self, scale: f32) -> Self {
+        Self {
+            edges: self.edges.map(|edge| edge * scale * scale),
+            depths: self.depths.map(|depth| depth * scale),
+            spread: self.spread * scale,
+            scale,
+        }
+    }
+
+    /// The crossing, and the determinant's magnitude.
+    #[inline(always)]
+    fn place_as_it_is(&self, inverse: f32, (t_min, t_max): (f32, f32)) -> (Option<Crossing>, f32) {
+        let &Self { edges: [u, v, w], depths: [az, bz, cz], spread, scale } = self;
         // The determinant has the sign of -(d . N) * d_major.
         let determinant = (u + v) + w;
-        let inverse = ray.shear.inverse;
         let front = (determinant > 0.0) == (inverse > 0.0);
         let (e1, e2) = (bz - az, cz - az);
         let q = az + (v * e1 + w * e2) / determinant;
@@ -168,18 +211,20 @@ impl Certain {
         let extent = e1.abs() + e2.abs();
         let area = determinant.abs();
         // The errors of an edge function and of q, which is at most 8 U error / area.
-        let edge = (depth * (8.0 * U) + spread * (4.0 * U)) * spread + UNDERFLOW;
+        let edge = (depth * (8.0 * U) + spread * (4.0 * U)) * spread + UNDERFLOW * scale * scale;
         let error = extent * spread * (depth + spread) + (depth + extent) * area;
+        // What the edge functions had lost by underflow is enlarged with them. Nothing is added where they were not.
+        let error = if scale > 1.0 { error + extent * (UNDERFLOW * scale * scale / U) } else { error };
         let unproven = Crossing { t: f32::NAN, front };
         if !(edge * 16.0 < area && area < 1.0e30) {
-            return Some(unproven);
+            return (Some(unproven), area);
         }
         let limit = TOLERANCE * q.abs() * area;
         if error * (8.0 * U) < limit && limit > SMALL && q.abs() > SMALL && t.abs() > 1.0e-30 && t.abs() < 1.0e37 {
-            return Some(Crossing { t, front });
+            return (Some(Crossing { t, front }), area);
         }
         // Proven to lie outside: the slack belongs before any rounding that made `t` (rule R7).
         let error = ((error * (8.0 * U) + 1.0e-36) / area + q.abs() * (8.0 * U) + 1.0e-36) * inverse.abs() + 1.0e-36;
-        if t + error < t_min || t - error > beyond(t_max) { None } else { Some(unproven) }
+        (if t + error < t_min || t - error > beyond(t_max) { None } else { Some(unproven) }, area)
     }
 }
