@@ -3,7 +3,12 @@ use std::{
     time::Instant,
 };
 
-use hitscan::{Hit, Ray, geometry::Aabb, primitives::Surface, render::Caster};
+use hitscan::{
+    Hit, Ray,
+    geometry::Aabb,
+    primitives::Surface,
+    render::{Caster, Material},
+};
 
 /// The most reflections that can be told apart, and one for the camera's own rays.
 pub const DEPTHS: usize = 17;
@@ -45,6 +50,15 @@ impl Tally {
     /// All rays.
     pub fn rays(&self) -> u64 {
         self.closest.iter().chain(&self.shadow).sum()
+    }
+
+    /// Adds what was counted elsewhere.
+    pub fn add(&mut self, other: &Self) {
+        for depth in 0..DEPTHS {
+            self.closest[depth] += other.closest[depth];
+            self.shadow[depth] += other.shadow[depth];
+        }
+        self.seconds += other.seconds;
     }
 }
 
@@ -114,6 +128,10 @@ impl<S: Caster + ?Sized> Caster for Counted<'_, S> {
 
     fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
         self.scene.surface(ray, hit)
+    }
+
+    fn material(&self, hit: &Hit) -> Option<Material> {
+        self.scene.material(hit)
     }
 
     fn bounds(&self) -> Aabb {

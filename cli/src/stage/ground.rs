@@ -1,6 +1,9 @@
 use hitscan::{
-    Hit, List, PreparedRay, Primitives, Ray, Scene, Span, geometry::Aabb, glam::Vec3, primitives::Surface,
-    render::Caster,
+    Hit, List, PreparedRay, Primitives, Ray, Scene, Span,
+    geometry::Aabb,
+    glam::Vec3,
+    primitives::Surface,
+    render::{Caster, Material},
 };
 
 use crate::failure::Failure;
@@ -93,6 +96,10 @@ impl<S: Caster + ?Sized> Caster for Grounded<'_, S> {
         } else {
             self.scene.surface(ray, hit)
         }
+    }
+
+    fn material(&self, hit: &Hit) -> Option<Material> {
+        if hit.primitive == self.number { None } else { self.scene.material(hit) }
     }
 
     fn bounds(&self) -> Aabb {
