@@ -73,7 +73,7 @@ pub fn run(mesh: &Mesh, view: View, effort: Effort, libraries: &Libraries, wante
     let sets = guide(&triangles, view, effort.rays)?;
     let mut memory = Memory::new(mesh.len(), wanted);
     let mut contenders = peers(mesh, libraries, wanted);
-    contenders.extend(hitscan(&triangles, mesh.bytes(), &mut memory)?);
+    contenders.extend(hitscan(&triangles, mesh.bytes(), &mut memory, wanted)?);
 
     let mut casts: Vec<[Option<Cast>; 4]> = contenders.iter().map(|_| [const { None }; 4]).collect();
     for (place, set) in sets.iter().enumerate() {

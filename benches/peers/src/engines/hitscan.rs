@@ -5,6 +5,7 @@ use hitscan::{
     Accelerator, Arena, Error, KdTree, List, Mesh, Ray, Scene,
     accel::{Plan, Structure},
     bvh, kdtree,
+    wide::{self, WideBvh},
 };
 
 use super::{Contender, Engine, Wanted, shadow};
@@ -18,6 +19,9 @@ const PLANS: [(&str, Plan); 5] = [
     ("hitscan BVH fast", Plan::Bvh(bvh::Options::fast())),
     ("hitscan BVH balanced", Plan::Bvh(bvh::Options::balanced())),
 ];
+
+/// And its structure for hosts.
+const WIDE: [(&str, wide::Options); 1] = [("hitscan wide", wide::Options {})];
 
 /// How hitscan's kD-tree is built.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -66,9 +70,21 @@ impl Memory {
     }
 }
 
-/// Builds the structures there is room for.
-pub fn hitscan<'a>(mesh: &'a Mesh<'a>, bytes: usize, memory: &'a mut Memory) -> Result<Vec<Contender<'a>>, Error> {
-    memory.0.iter_mut().map(|(name, plan, words)| contender(name, plan, mesh, bytes, words)).collect()
+/// Builds the structures that are wanted; those in `memory` read the mesh's `bytes`, too.
+pub fn hitscan<'a>(
+    mesh: &'a Mesh<'a>,
+    bytes: usize,
+    memory: &'a mut Memory,
+    wanted: &Wanted,
+) -> Result<Vec<Contender<'a>>, Error> {
+    let small = memory.0.iter_mut().map(|(name, plan, words)| contender(name, plan, mesh, bytes, words));
+    let wide = WIDE.into_iter().filter(|(name, _)| wanted.has(name)).map(|(name, options)| wide(name, &options, mesh));
+    small.chain(wide).collect()
+}
+
+fn wide<'a>(name: &str, options: &wide::Options, mesh: &'a Mesh<'a>) -> Result<Contender<'a>, Error> {
+    let (tree, build) = time_build(|| WideBvh::new(mesh, options));
+    Ok(Contender { name: name.to_owned(), role: None, build, engine: Box::new(Wide(tree?)) })
 }
 
 fn contender<'a>(
@@ -111,5 +127,22 @@ impl<A: Accelerator> Engine for Built<'_, A> {
 
     fn any(&self, rays: &[Ray], t: &mut Vec<f32>) {
         t.extend(rays.iter().map(|ray| shadow(self.scene.any_hit(ray))));
+    }
+}
+
+/// The structure for hosts, one ray at a time; it keeps the triangles it reads.
+struct Wide<'a>(WideBvh<&'a Mesh<'a>>);
+
+impl Engine for Wide<'_> {
+    fn bytes(&self) -> usize {
+        self.0.bytes()
+    }
+
+    fn closest(&self, rays: &[Ray], t: &mut Vec<f32>) {
+        t.extend(rays.iter().map(|ray| self.0.closest_hit(ray).map_or(f32::INFINITY, |hit| hit.t)));
+    }
+
+    fn any(&self, rays: &[Ray], t: &mut Vec<f32>) {
+        t.extend(rays.iter().map(|ray| shadow(self.0.any_hit(ray))));
     }
 }
