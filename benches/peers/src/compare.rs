@@ -150,6 +150,11 @@ impl Row {
         triangles as f64 / self.build.as_secs_f64() / 1.0e6
     }
 
+    /// How many answers differ.
+    pub fn differences(&self) -> usize {
+        self.casts.iter().flatten().map(|cast| cast.differ).sum()
+    }
+
     /// How many answers differ, of each kind that was cast.
     pub fn differ(&self) -> String {
         let count = |cast: &Option<Cast>| cast.as_ref().map_or_else(|| "–".into(), |cast| cast.differ.to_string());
@@ -160,4 +165,34 @@ impl Row {
 /// The kinds of rays with the places where their casts are.
 pub fn kinds() -> impl Iterator<Item = (usize, Kind)> {
     Kind::ALL.into_iter().enumerate()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::procedural;
+
+    /// How many rays may differ: those through edges, which the peers answer one way or the other.
+    const FEW: usize = 3;
+
+    #[test]
+    fn all_engines_agree() {
+        let libraries = Libraries::open(&[]).expect("without paths, none is an answer");
+        let effort = Effort { rays: 4096, rounds: 1 };
+        for mesh in [procedural::knot(2000), procedural::soup(1000), procedural::terrain(1000)] {
+            let outcome = run(&mesh, View::Outside, effort, &libraries, &Wanted::default()).expect("a mesh");
+            assert!(outcome.rays.iter().all(|&rays| rays > 3000), "{}: {:?}", mesh.name, outcome.rays);
+            for row in &outcome.rows {
+                let most = if row.name.starts_with("hitscan") { 0 } else { FEW };
+                assert!(row.differences() <= most, "{}: {} differs: {}", mesh.name, row.name, row.differ());
+                assert!(row.bytes > 0 && row.casts.iter().any(Option::is_some), "{}", row.name);
+            }
+        }
+    }
+
+    #[test]
+    fn an_answer_differs_where_it_is_another() {
+        assert!(differ(1.0, f32::INFINITY) && differ(f32::INFINITY, 1.0) && differ(1.0, 1.001));
+        assert!(!differ(f32::INFINITY, f32::INFINITY) && !differ(1.0, 1.0 + f32::EPSILON));
+    }
 }

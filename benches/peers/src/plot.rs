@@ -49,15 +49,11 @@ fn panel(
 ) -> Result<(), Box<dyn Error>> {
     let to = if role == Role::High { "Embree high" } else { "obvhs" };
     let last = outcomes.len().saturating_sub(1) as f64;
-    let series: Vec<(usize, &str, Vec<(f64, f64)>)> = names(outcomes)
-        .enumerate()
-        .map(|(number, name)| {
-            let points = ratios(outcomes, name, role, place).map(|(mesh, ratio)| (mesh as f64, ratio));
-            (number, name, points.collect())
-        })
-        .collect();
-    let ratios = || series.iter().flat_map(|(_, _, points)| points).map(|point| point.1);
-    let (least, most) = (ratios().fold(0.5, f64::min) / 1.2, ratios().fold(1.0, f64::max) * 1.2);
+    let points = |name| -> Vec<(f64, f64)> {
+        ratios(outcomes, name, role, place).map(|(mesh, ratio)| (mesh as f64, ratio)).collect()
+    };
+    let all = || names(outcomes).flat_map(points).map(|point| point.1);
+    let (least, most) = (all().fold(0.5, f64::min) / 1.2, all().fold(1.0, f64::max) * 1.2);
     let mut chart = ChartBuilder::on(area)
         .caption(format!("{kind} rays, ratio to {to}"), ("sans-serif", 20))
         .margin(12)
@@ -75,8 +71,11 @@ fn panel(
         .x_label_formatter(&name)
         .y_label_formatter(&|ratio| format!("{ratio:.2}"))
         .draw()?;
-    for (number, name, points) in series.into_iter().filter(|(_, _, points)| !points.is_empty()) {
-        let color = color(number);
+    for (number, name) in names(outcomes).enumerate() {
+        let (points, color) = (points(name), color(number));
+        if points.is_empty() {
+            continue;
+        }
         chart
             .draw_series(LineSeries::new(points, color.stroke_width(1)).point_size(4))?
             .label(name)

@@ -70,7 +70,8 @@ fn against(outcomes: &[Outcome], role: Role) {
         .filter(|&place| outcomes.iter().any(|outcome| outcome.reference(role, place).is_some()))
         .collect();
     let titles = kinds().filter(|(place, _)| places.contains(place)).map(|(_, kind)| kind.to_string());
-    head(["engine", "B/tri", "build, M tri/s"].map(String::from).into_iter().chain(titles));
+    let start = ["engine", "B/tri", "build, M tri/s"].map(String::from).into_iter();
+    head(start.chain(titles).chain(["differ".to_owned()]));
     for name in names(outcomes) {
         let over = |value: &dyn Fn(&Row, &Outcome) -> f64| median(rows(outcomes, name).map(|(row, of)| value(row, of)));
         let start = [
@@ -83,7 +84,8 @@ fn against(outcomes: &[Outcome], role: Role) {
             let least = ratios.iter().copied().reduce(f64::min);
             least.map_or_else(|| "–".to_owned(), |least| format!("{:.2} ({least:.2})", median(ratios)))
         };
-        line(start.into_iter().chain(places.iter().map(cell)));
+        let differ: usize = rows(outcomes, name).map(|(row, _)| row.differences()).sum();
+        line(start.into_iter().chain(places.iter().map(cell)).chain([differ.to_string()]));
     }
 }
 
