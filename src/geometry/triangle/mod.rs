@@ -8,11 +8,15 @@ mod closest;
 mod double;
 mod exact;
 mod filter;
+#[cfg(feature = "std")]
+mod lanes;
 mod shortcut;
 
 use glam::Vec3;
 
 use self::filter::{Corner, Verdict};
+#[cfg(feature = "std")]
+pub(crate) use self::lanes::ShearLanes;
 use super::{Aabb, Axis, PreparedRay, moved, ray::beyond};
 use crate::math::{self, greatest, least};
 

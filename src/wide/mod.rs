@@ -1,0 +1,115 @@
+//! The fastest structure on hosts (feature `std`): eight boxes or triangles at a time.
+
+mod binary;
+mod build;
+mod collapse;
+mod node;
+mod simd;
+mod slabs;
+mod tree;
+mod walk;
+
+use std::vec::Vec;
+
+use fearless_simd::{Level, dispatch};
+
+pub use self::simd::Simd;
+use self::{node::Child, tree::Tree};
+use crate::{
+    error::BuildError,
+    geometry::{Aabb, Ray},
+    primitives::{Hit, Surface, Triangles},
+    render::Caster,
+};
+
+/// How a [`WideBvh`] is built.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Options {}
+
+/// A BVH of eight boxes a node and up to eight triangles a block, for hosts.
+#[derive(Clone, Debug)]
+pub struct WideBvh<P> {
+    tree: Tree,
+    level: Level,
+    triangles: P,
+}
+
+impl<P: Triangles> WideBvh<P> {
+    /// Builds it over `triangles`.
+    ///
+    /// # Errors
+    ///
+    /// [`BuildError`].
+    pub fn new(triangles: P, _options: &Options) -> Result<Self, BuildError> {
+        let count = triangles.len();
+        if count >= Child::MAX_TRIANGLES / 2 {
+            return Err(BuildError::TooMany { limit: Child::MAX_TRIANGLES / 2 });
+        }
+        let boxes: Vec<Aabb> = (0..count).map(|index| triangles.bounds(index)).collect();
+        if let Some(bad) = boxes.iter().position(|bounds| !bounds.is_valid()) {
+            return Err(BuildError::Bounds { primitive: bad as u32 });
+        }
+        let mut tree = collapse::collapse(&build::build(&boxes), |number| triangles.triangle(number));
+        tree.sides = triangles.sides();
+        if (0..count).any(|index| triangles.mask(index) != u32::MAX) {
+            tree.masks = (0..count).map(|index| triangles.mask(index)).collect();
+        }
+        Ok(Self { tree, level: Level::new(), triangles })
+    }
+
+    /// The same, asked by these instructions; as before, if this machine does not have them.
+    #[must_use]
+    pub fn with_simd(self, simd: Simd) -> Self {
+        Self { level: simd.level().unwrap_or(self.level), ..self }
+    }
+
+    /// The triangles.
+    #[must_use]
+    pub const fn triangles(&self) -> &P {
+        &self.triangles
+    }
+
+    /// The box around everything.
+    #[must_use]
+    pub const fn bounds(&self) -> Aabb {
+        self.tree.bounds
+    }
+
+    /// The bytes that rays walk through: all besides the triangles given.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.tree.nodes[..]) + size_of_val(&self.tree.blocks[..]) + size_of_val(&self.tree.masks[..])
+    }
+
+    /// The first hit of the ray.
+    #[must_use]
+    pub fn closest_hit(&self, ray: &Ray) -> Option<Hit> {
+        let ray = &ray.prepare()?;
+        dispatch!(self.level, simd => walk::closest(simd, &self.tree, ray))
+    }
+
+    /// Whether the ray hits anything.
+    #[must_use]
+    pub fn any_hit(&self, ray: &Ray) -> bool {
+        let Some(ray) = &ray.prepare() else { return false };
+        dispatch!(self.level, simd => walk::any(simd, &self.tree, ray))
+    }
+}
+
+impl<P: Triangles> Caster for WideBvh<P> {
+    fn closest_hit(&self, ray: &Ray, _depth: u32) -> Option<Hit> {
+        Self::closest_hit(self, ray)
+    }
+
+    fn any_hit(&self, ray: &Ray, _depth: u32) -> bool {
+        Self::any_hit(self, ray)
+    }
+
+    fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
+        self.triangles.surface(ray, hit)
+    }
+
+    fn bounds(&self) -> Aabb {
+        Self::bounds(self)
+    }
+}
