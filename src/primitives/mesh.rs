@@ -131,7 +131,7 @@ impl<'a> Mesh<'a> {
     /// The sides from which the triangles can be hit.
     #[must_use]
     pub const fn sides(&self) -> Sides {
-        self.sides
+        self.faces.sides
     }
 
     /// The triangle of this number; one without area if there is none.
