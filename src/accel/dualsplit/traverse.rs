@@ -12,10 +12,12 @@ use crate::{
 
 /// The walk through a [`DualSplit`]: front to back, a stack of segments that wait.
 #[derive(Clone, Debug)]
+#[repr(C)]
 pub struct DualSplitTraversal<'a> {
+    /// First, where its address is the walk's own: nothing is added for each node.
+    slopes: Slopes,
     nodes: &'a [u32],
     references: References<'a>,
-    slopes: Slopes,
     /// The cell to go on with: the whole at first, after a pause the one before which it was; none behind a leaf.
     next: Option<Segment>,
     /// Far children, the nearest on top.

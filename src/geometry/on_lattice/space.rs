@@ -2,7 +2,7 @@ use glam::Vec3;
 
 use super::{
     LatticeRay, LatticeRays,
-    fixed::{Scaled, high, reciprocal, shifted},
+    fixed::{Scaled, cut, high, reciprocal, shifted},
     ray::{Interval, LAST, Line, MIDDLE},
 };
 use crate::geometry::{Aabb, Axis, Lattice, Ray, in_range};
@@ -114,8 +114,8 @@ impl LatticeSpace {
             count: if is_valid { count } else { 0 },
             origin,
             start: self.start(origin),
-            speed: Planes { along: first.along.map(|speed| shifted(speed, first.unit - unit)), unit },
-            step: step.along.map(|speed| shifted(speed, step.unit - unit)),
+            speed: Planes { along: first.along.map(|speed| cut(speed, unit - first.unit)), unit },
+            step: step.along.map(|speed| cut(speed, unit - step.unit)),
         }
     }
 
@@ -139,7 +139,7 @@ impl LatticeSpace {
         let [x, y, z] = [along(Axis::X), along(Axis::Y), along(Axis::Z)];
         // With a bit of headroom for what is added or taken off.
         let unit = x.exponent.max(y.exponent).max(z.exponent) + 1;
-        Planes { along: [x.in_units(unit), y.in_units(unit), z.in_units(unit)], unit }
+        Planes { along: [x, y, z].map(|length| cut(length.mantissa, unit - length.exponent)), unit }
     }
 
     /// The ray along a line from `origin`, for t from 0, seeing everything.
@@ -168,7 +168,7 @@ fn line(start: &Planes, speed: [i32; 3]) -> Option<Line> {
     let inverse = reciprocal(((fast.unsigned_abs() << shift) & i32::MAX as u32) as i32);
     // Not so small that the point is beyond the number.
     let unit = start.unit.max(-30);
-    let at = |axis: Axis| shifted(start.along[axis as usize], start.unit - unit);
+    let at = |axis: Axis| cut(start.along[axis as usize], unit - start.unit);
     let way = at(major);
     let cross = |axis: Axis| {
         // In 2^-30, 1 at most.
