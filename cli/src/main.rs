@@ -10,6 +10,7 @@ mod difference;
 mod failure;
 mod hits;
 mod input;
+mod interrupt;
 mod model;
 mod output;
 mod picture;
@@ -39,6 +40,7 @@ struct Cli {
 }
 
 fn main() -> ExitCode {
+    interrupt::listen();
     match Cli::try_parse() {
         Ok(cli) => cli.command.run().unwrap_or_else(|failure| failure.report()),
         Err(error) => refuse(&error),
