@@ -35,6 +35,7 @@ pub use picture::write_png;
 pub use scene::Source;
 pub use shot::{Settings, Shot, Tiles, rows};
 pub use version::version;
+pub use world::bake as bake_world;
 
 use std::{
     env,

@@ -15,10 +15,10 @@ use super::{predict, print};
 use crate::{
     chip::{self, Chip},
     failure::{self, Failure},
-    output::{self, write_atomically},
+    output,
     scene::{Built, Choice, Named, Palette, Preset, Shape, Source, StructureArgs, broken},
     units::{count, parse_bytes},
-    world,
+    world::{self, write_words},
 };
 
 /// Turn a mesh into the asset that firmware includes
@@ -89,7 +89,7 @@ impl Bake {
             let what = format!("--fit {most}: with this structure ({}) it takes {} bytes", built.name, words.len() * 4);
             return Err(Failure::new(what, "allow more bytes, or choose another structure, such as kdtree"));
         }
-        write_atomically(&self.output, |file| words.iter().try_for_each(|word| file.write_all(&word.to_le_bytes())))?;
+        write_words(&self.output, &words)?;
         let mut table = table(&words, &built, &structure, geometry.len(), &self.output)?;
         if let Some(snapped) = snapped {
             let _ = writeln!(table, "vertices moved by at most {} to the lattice", snapped.displacement);
@@ -124,7 +124,7 @@ impl Bake {
         }
         let structure = StructureArgs { structure: self.structure, preset: self.preset.unwrap_or_default() };
         let words = world::load(&self.model, &structure)?;
-        write_atomically(&self.output, |file| words.iter().try_for_each(|word| file.write_all(&word.to_le_bytes())))?;
+        write_words(&self.output, &words)?;
         let source = Source::Asset { words, positions: Vec::new() };
         let table = source.with_subject(&self.output, &StructureArgs::default(), false, |subject| {
             Ok(format!("{}: {}\n{}\n", self.output.display(), subject.size(), subject.structure()))

@@ -36,6 +36,7 @@ use hitscan::{Instance, Instances, Mesh, Scene, bake::Baker};
 use self::file::File;
 use crate::{
     failure::Failure,
+    output::{OutputError, write_atomically},
     scene::{Built, Choice, Geometry, Named, Preset, Source, StructureArgs, broken},
 };
 
@@ -78,6 +79,21 @@ pub fn load(path: &Path, options: &StructureArgs) -> Result<Vec<u32>, Failure> {
         baker = baker.part(asset);
     }
     Ok(baker.instances(instances.placed()).structure(top.structure(&instances)?).finish())
+}
+
+/// Bakes the world that a file describes into an asset.
+///
+/// # Errors
+///
+/// What is wrong with the description, what it names, or the output.
+pub fn bake(path: &Path, output: &Path) -> Result<(), Failure> {
+    let words = load(path, &StructureArgs::default())?;
+    Ok(write_words(output, &words)?)
+}
+
+/// Writes the words of an asset.
+pub fn write_words(path: &Path, words: &[u32]) -> Result<(), OutputError> {
+    write_atomically(path, |file| words.iter().try_for_each(|word| file.write_all(&word.to_le_bytes())))
 }
 
 /// A mesh that stands in a file beside `path`, or a plant that grows by itself, with its structure.
