@@ -8,7 +8,7 @@ use super::{hull::Hull, item::Item};
 pub(super) const MOST: usize = 32;
 
 /// Added to a small number, rounds it to a whole one that stands in the last bits.
-const ROUND: f32 = 12_582_912.0; // 1.5 * 2^23
+pub(super) const ROUND: f32 = 12_582_912.0; // 1.5 * 2^23
 
 /// Where the bins of a set are.
 #[derive(Clone, Copy, Debug)]
@@ -71,6 +71,12 @@ impl Bins {
         self
     }
 
+    /// The boxes before and behind a border.
+    pub(super) fn parts(&self, cut: &Cut) -> [Hull; 2] {
+        let (before, behind) = self.hulls[cut.axis].split_at((cut.border - ROUND) as usize);
+        [before, behind].map(|hulls| hulls.iter().fold(Hull::EMPTY, |all, hull| all.union(*hull)))
+    }
+
     /// The border at which dividing costs least.
     #[inline]
     pub(super) fn cheapest(&self, grid: &Grid, rules: &Rules) -> Option<Cut> {
@@ -122,6 +128,12 @@ impl Rules {
     pub(super) fn cost(&self, hull: Hull, count: u32) -> f32 {
         let blocks = (count + (1 << self.block) - 1) >> self.block;
         hull.weight(self.scale) * blocks as f32
+    }
+
+    /// The same, had each item its own test.
+    #[inline(always)]
+    pub(super) fn linear(&self, hull: Hull, count: u32) -> f32 {
+        hull.weight(self.scale) * count as f32
     }
 
     /// Whether parts may have so many items.

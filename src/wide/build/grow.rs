@@ -6,12 +6,15 @@ use std::mem;
 use super::{
     Options,
     bins::{Bins, Grid, Rules},
+    hull::Hull,
     item::{Extent, Item},
     node::Node,
     partition::{CHUNK, partition, partition_parallel},
     progress::Monitor,
+    spatial::{Cells, Parts, Plane},
     sweep,
 };
+use crate::primitives::Primitives;
 
 /// Sets of more items are divided by all threads together.
 const SHARED: usize = 4 * CHUNK;
@@ -21,12 +24,14 @@ const ALONE: usize = 4096;
 
 /// A set of items and the place for its hierarchy.
 pub(super) struct Task<'t> {
+    /// The items, and room for those that cuts add.
     pub(super) items: &'t mut [Item],
-    /// As long as the items.
+    pub(super) count: usize,
+    /// As long.
     pub(super) spare: &'t mut [Item],
-    /// As long as the items.
+    /// As long.
     pub(super) references: &'t mut [u32],
-    /// For all nodes below: two less than twice the items; of a task that is split, the children are taken out.
+    /// For all nodes below: two less than twice as many; of a task that is split, the children are taken out.
     pub(super) nodes: &'t mut [Node],
     /// The numbers of the first reference and node.
     pub(super) first: u32,
@@ -37,29 +42,43 @@ pub(super) struct Task<'t> {
 }
 
 impl<'t> Task<'t> {
-    /// Its parts; the first `left` items are in the first.
-    fn split(self, left: usize) -> [Self; 2] {
-        let (items, others) = self.items.split_at_mut(left);
-        let extents = match self.references.len() > SHARED {
-            true => [extent_parallel(items), extent_parallel(others)],
-            false => [Extent::of(items), Extent::of(others)],
+    /// Its parts, of so many items, which stand one behind the other.
+    fn split(self, [left, right]: [usize; 2]) -> [Self; 2] {
+        // Each gets its share of the room.
+        let room = self.items.len() - (left + right);
+        let size = left + (room as u64 * left as u64 / (left + right) as u64) as usize;
+        self.items.copy_within(left..left + right, size);
+        let (items, others) = self.items.split_at_mut(size);
+        let extents = match left + right > SHARED {
+            true => [extent_parallel(&items[..left]), extent_parallel(&others[..right])],
+            false => [Extent::of(&items[..left]), Extent::of(&others[..right])],
         };
-        let spare = self.spare.split_at_mut(left);
-        let references = self.references.split_at_mut(left);
-        let nodes = self.nodes.split_at_mut(2 * left - 2);
-        let levels = self.levels - 1;
-        let base = self.base + 2;
+        let spare = self.spare.split_at_mut(size);
+        let references = self.references.split_at_mut(size);
+        let nodes = self.nodes.split_at_mut(2 * size - 2);
+        let (levels, base) = (self.levels - 1, self.base + 2);
         [
-            Self { items, spare: spare.0, references: references.0, nodes: nodes.0, extent: extents[0], levels, base, ..self },
+            Self {
+                items,
+                count: left,
+                spare: spare.0,
+                references: references.0,
+                nodes: nodes.0,
+                first: self.first,
+                base,
+                extent: extents[0],
+                levels,
+            },
             Self {
                 items: others,
+                count: right,
                 spare: spare.1,
                 references: references.1,
                 nodes: nodes.1,
+                first: self.first + size as u32,
+                base: base + 2 * size as u32 - 2,
                 extent: extents[1],
                 levels,
-                first: self.first + left as u32,
-                base: base + 2 * left as u32 - 2,
             },
         ]
     }
@@ -71,19 +90,26 @@ pub(super) fn extent_parallel(items: &[Item]) -> Extent {
 }
 
 /// What all tasks share.
-pub(super) struct Grower<'g> {
+pub(super) struct Grower<'g, P: ?Sized> {
+    pub(super) primitives: &'g P,
     pub(super) options: &'g Options,
+    /// Binary logarithm of the primitives that are tested at once.
     pub(super) block: u32,
+    /// The box of everything.
+    pub(super) whole: Hull,
     pub(super) monitor: &'g Monitor<'g>,
 }
 
-impl Grower<'_> {
+/// Parts whose boxes have less than this in common, of the weight of everything, are not worth a look at cuts.
+const OVERLAP: f32 = 1.0e-5;
+
+impl<P: Primitives + Sync + ?Sized> Grower<'_, P> {
     /// Builds the hierarchy of a set; its root.
     pub(super) fn grow(&self, task: Task<'_>) -> Node {
-        let count = task.items.len();
-        if count <= ALONE {
+        let size = task.items.len();
+        if size <= ALONE {
             let node = self.grow_alone(task);
-            self.monitor.advance(count as u32);
+            self.monitor.advance(size as u32);
             return node;
         }
         if self.monitor.is_stopped() {
@@ -100,25 +126,26 @@ impl Grower<'_> {
     /// A node, its children made by `both`; or a leaf.
     fn inner(&self, mut task: Task<'_>, both: impl FnOnce([Task<'_>; 2]) -> (Node, Node)) -> Node {
         let (hull, first, base) = (task.extent.hull, task.first, task.base);
-        let Some(left) = self.divide(&mut task) else {
-            for (reference, item) in task.references.iter_mut().zip(&*task.items) {
+        let Some(counts) = self.divide(&mut task) else {
+            for (reference, item) in task.references.iter_mut().zip(&task.items[..task.count]) {
                 *reference = item.number();
             }
-            return Node::leaf(hull, first, task.items.len() as u32);
+            return Node::leaf(hull, first, task.count as u32);
         };
         let (place, nodes) = mem::take(&mut task.nodes).split_at_mut(2);
         task.nodes = nodes;
-        let (left, right) = both(task.split(left));
+        let (left, right) = both(task.split(counts));
         place.copy_from_slice(&[left, right]);
         Node::inner(hull, base)
     }
 
-    /// Puts the items of the left part first; how many they are. None if the set is to be a leaf.
+    /// Brings the items of the left part before those of the right; how many they are. None if the set is to be a leaf.
     #[inline(never)]
-    fn divide(&self, task: &mut Task<'_>) -> Option<usize> {
-        let count = task.items.len();
+    fn divide(&self, task: &mut Task<'_>) -> Option<[usize; 2]> {
+        let count = task.count;
         let block = 1 << self.block;
-        if count <= 1 || (count <= block && self.options.sorted == 0) {
+        let sorted = (self.options.sorted as usize).min(sweep::MOST);
+        if count <= 1 || (count <= block && sorted == 0) {
             return None;
         }
         let scale = task.extent.hull.scale();
@@ -126,30 +153,73 @@ impl Grower<'_> {
         let rules = Rules { scale, block: self.block, most };
         let whole = task.extent.hull.weight(scale);
         let pays = |cost: f32| count > block || cost + whole * self.options.step_cost < whole;
-        if count <= (self.options.sorted as usize).min(sweep::MOST) {
-            return match sweep::divide(task.items, task.spare, &rules) {
-                Some((left, cost)) => pays(cost).then_some(left),
-                None => (count > block).then_some(count / 2),
-            };
-        }
-        let grid = Grid::new(task.extent.middles, (4 + count / 16).min(self.options.bins as usize));
-        let bins = match count > SHARED {
-            true => {
-                let chunks = task.items.par_chunks(CHUNK).map(|chunk| Bins::of(chunk, &grid));
-                chunks.reduce_with(|bins, other| bins.merge(&other))?
+        let halves = [count / 2, count - count / 2];
+        let (cost, parts, cut) = if count <= sorted {
+            match sweep::divide(&mut task.items[..count], task.spare, &rules) {
+                Some((left, cost)) => {
+                    let (items, others) = task.items[..count].split_at(left);
+                    (cost, [Extent::of(items).hull, Extent::of(others).hull], Err(left))
+                }
+                None => return (count > block).then_some(halves),
             }
-            false => Bins::of(task.items, &grid),
+        } else {
+            let items = &task.items[..count];
+            let grid = Grid::new(task.extent.middles, (4 + count / 16).min(self.options.bins as usize));
+            let bins = match count > SHARED {
+                true => {
+                    let chunks = items.par_chunks(CHUNK).map(|chunk| Bins::of(chunk, &grid));
+                    chunks.reduce_with(|bins, other| bins.merge(&other))?
+                }
+                false => Bins::of(items, &grid),
+            };
+            match bins.cheapest(&grid, &rules) {
+                Some(cut) => (cut.cost, bins.parts(&cut), Ok(cut)),
+                None => return (count > block).then_some(halves),
+            }
         };
-        match bins.cheapest(&grid, &rules) {
-            Some(cut) if pays(cut.cost) => Some(if count > SHARED {
-                let left = partition_parallel(task.items, task.spare, &cut);
+        if let Some(plane) = self.plane(task, &rules, parts, cost)
+            && pays(plane.cost)
+        {
+            let parts = plane.divide(task.items, task.spare, count, (self.primitives, &rules));
+            if parts[0] > 0 && parts[1] > 0 && parts[0] as u32 <= most && parts[1] as u32 <= most {
+                return Some(parts);
+            }
+            return Some([(parts[0] + parts[1]) / 2, (parts[0] + parts[1]).div_ceil(2)]);
+        }
+        if !pays(cost) {
+            return None;
+        }
+        let (items, spare) = (&mut task.items[..count], &mut task.spare[..count]);
+        let left = match cut {
+            Err(left) => left,
+            Ok(cut) if count > SHARED => {
+                let left = partition_parallel(items, spare, &cut);
                 mem::swap(&mut task.items, &mut task.spare);
                 left
-            } else {
-                partition(task.items, task.spare, &cut)
-            }),
-            None if count > block => Some(count / 2),
-            _ => None,
+            }
+            Ok(cut) => partition(items, spare, &cut),
+        };
+        Some([left, count - left])
+    }
+
+    /// A plane that divides a set for less than `least`, if there is room to cut and its `parts` would overlap otherwise.
+    fn plane(&self, task: &Task<'_>, rules: &Rules, parts: [Hull; 2], least: f32) -> Option<Plane> {
+        let room = (task.items.len() - task.count) as u32;
+        let common = parts[0].intersection(parts[1]);
+        let scale = self.whole.scale();
+        if room == 0 || common.is_empty() || common.weight(scale) < super::tune(1) * self.whole.weight(scale) {
+            return None;
         }
+        if task.count as f32 > super::tune(3) || (task.count as f32) < super::tune(4) { return None; }
+        let items = &task.items[..task.count];
+        let cells = Cells::new(task.extent.hull);
+        let parts = match items.len() > SHARED {
+            true => {
+                let chunks = items.par_chunks(CHUNK).map(|chunk| Parts::of(chunk, &cells, self.primitives));
+                chunks.reduce_with(|parts, other| parts.merge(&other))?
+            }
+            false => Parts::of(items, &cells, self.primitives),
+        };
+        parts.cheapest(&cells, rules, least * super::tune(2), items.len() as u32, room)
     }
 }

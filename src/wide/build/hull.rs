@@ -75,6 +75,20 @@ impl Hull {
         Vec4::ZERO - self.low - self.high
     }
 
+    /// The part before a plane.
+    #[inline(always)]
+    pub(super) fn below(mut self, axis: usize, position: f32) -> Self {
+        self.high[axis] = self.high[axis].max(0.0 - position);
+        self
+    }
+
+    /// The part behind a plane.
+    #[inline(always)]
+    pub(super) fn above(mut self, axis: usize, position: f32) -> Self {
+        self.low[axis] = self.low[axis].max(position + 0.0);
+        self
+    }
+
     /// Whether it contains no point.
     #[inline(always)]
     pub(super) fn is_empty(self) -> bool {

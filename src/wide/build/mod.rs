@@ -10,6 +10,7 @@ mod options;
 mod partition;
 mod progress;
 mod reinsert;
+mod spatial;
 mod sweep;
 
 #[cfg(test)]
@@ -56,16 +57,20 @@ pub(super) fn build<P: Primitives + Sync + ?Sized>(
         return Ok(Some(Binary::default()));
     }
     let mut items = gather(primitives)?;
-    let monitor = Monitor::new(count, tell);
-    let mut spare: Vec<Item> = vec![bytemuck::Zeroable::zeroed(); items.len()];
-    let mut references = vec![0; items.len()];
-    let mut nodes: Vec<Node> = vec![bytemuck::Zeroable::zeroed(); items.len() * 2 - 1];
-    let block = options.block.clamp(1, 8).next_power_of_two().ilog2();
-    let grower = Grower { options, block, monitor: &monitor };
     let extent = extent_parallel(&items);
+    let count = items.len();
+    let size = (count as f64 * f64::from(options.references.clamp(1.0, 2.0))) as usize;
+    items.resize(size, Item::NOTHING);
+    let mut spare = vec![Item::NOTHING; size];
+    let mut references = vec![0; size];
+    let mut nodes: Vec<Node> = vec![bytemuck::Zeroable::zeroed(); size * 2 - 1];
+    let monitor = Monitor::new(size as u32, tell);
+    let block = options.block.clamp(1, 8).next_power_of_two().ilog2();
+    let grower = Grower { primitives, options, block, whole: extent.hull, monitor: &monitor };
     if let Some((root, below)) = nodes.split_first_mut() {
         *root = grower.grow(Task {
             items: &mut items,
+            count,
             spare: &mut spare,
             references: &mut references,
             nodes: below,
@@ -95,4 +100,10 @@ fn gather<P: Primitives + Sync + ?Sized>(primitives: &P) -> Result<Vec<Item>, Bu
         Some(primitive) => Err(BuildError::Bounds { primitive }),
         None => Ok(items),
     }
+}
+
+/// x
+pub(super) fn tune(i: usize) -> f32 {
+    static T: std::sync::OnceLock<std::vec::Vec<f32>> = std::sync::OnceLock::new();
+    T.get_or_init(|| std::env::var("TUNE").unwrap_or("100 1e-5 0 0 0 0".into()).split(' ').map(|s| s.parse().unwrap()).collect())[i]
 }
