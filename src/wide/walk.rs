@@ -1,6 +1,6 @@
 //! One ray's way through the tree.
 
-use fearless_simd::{Simd, SimdBase, SimdMask, f32x8};
+use fearless_simd::{Simd, SimdBase, f32x8};
 
 use super::{
     binary::MAX_DEPTH,
@@ -61,9 +61,9 @@ fn descend<S: Simd>(node: &Node, met: &Met<S>, stack: &mut Stack) -> Child {
     Child(near as u32)
 }
 
-/// The hits with the triangles of a block.
+/// The coordinates of a block's corners.
 #[inline(always)]
-fn block_rows<S: Simd>(simd: S, block: &Block, count: usize, axes: [usize; 3]) -> [[f32x8<S>; 3]; 3] {
+fn corners<S: Simd>(simd: S, block: &Block, count: usize, axes: [usize; 3]) -> [[f32x8<S>; 3]; 3] {
     [0, 1, 2].map(|corner| {
         axes.map(|axis| {
             let from = (3 * corner + axis) * count;
@@ -71,6 +71,47 @@ fn block_rows<S: Simd>(simd: S, block: &Block, count: usize, axes: [usize; 3]) -
             row(simd, words)
         })
     })
+}
+
+/// The least hit with a block's triangles, if one comes before `best`.
+#[inline(always)]
+fn improve<S: Simd>(
+    simd: S,
+    tree: &Tree,
+    block: &Block,
+    count: usize,
+    (ray, shear): (&PreparedRay, &ShearLanes<S>),
+    from: Hit,
+    best: &mut Hit,
+) {
+    let possible = shear.test(simd, corners(simd, block, count, shear.axes));
+    let lanes = possible.lanes & (0xff >> (WIDTH - count));
+    if lanes == 0 {
+        return;
+    }
+    let crossings = shear.place(simd, &possible, lanes, (from.t, best.t));
+    let mut proven = crossings.proven;
+    if tree.sides == Sides::Front {
+        proven &= crossings.front();
+    }
+    let t = crossings.t.as_array();
+    while proven != 0 {
+        let lane = proven.trailing_zeros() as usize & 7;
+        proven &= proven - 1;
+        let number = block.get((TRIANGLE_WORDS - 1) * count + lane).copied().unwrap_or(0);
+        let hit = Hit { t: t[lane], primitive: number };
+        if hit.precedes(best) && tree.is_seen(number, ray) {
+            *best = hit;
+        }
+    }
+    let mut open = crossings.open;
+    while open != 0 {
+        let lane = open.trailing_zeros() as usize & 7;
+        open &= open - 1;
+        if let Some(hit) = tree.intersect(block, (lane, count), ray, &Span::new(from, *best)) {
+            *best = hit;
+        }
+    }
 }
 
 /// The least hit of `ray`.
@@ -93,41 +134,10 @@ pub(super) fn closest<S: Simd>(simd: S, tree: &Tree, ray: &PreparedRay) -> Optio
             }
         } else {
             let Some(block) = tree.block(child) else { break };
-            let count = child.count();
-            let possible = shear.test(simd, block_rows(simd, block, count, shear.axes));
-            let lanes = possible.lanes & (0xff >> (WIDTH - count));
-            if lanes != 0 {
-                let before = best;
-                let crossings = shear.place(simd, &possible);
-                let within = crossings.t.simd_le(best.t) & crossings.t.simd_ge(from.t);
-                let mut proven = crossings.proven & lanes & within.to_bitmask() as u32;
-                if tree.sides == Sides::Front {
-                    proven &= crossings.front();
-                }
-                let t = crossings.t.as_array();
-                while proven != 0 {
-                    let lane = proven.trailing_zeros() as usize & 7;
-                    proven &= proven - 1;
-                    let number = block.get((TRIANGLE_WORDS - 1) * count + lane).copied().unwrap_or(0);
-                    let hit = Hit { t: t[lane], primitive: number };
-                    if hit.precedes(&best) && tree.is_seen(number, ray) {
-                        best = hit;
-                    }
-                }
-                let mut open = lanes & !crossings.proven;
-                while open != 0 {
-                    let lane = open.trailing_zeros() as usize & 7;
-                    open &= open - 1;
-                    let span = Span::new(from, best);
-                    if let Some(hit) = tree.intersect(block, (lane, count), ray, &span)
-                        && tree.is_seen(hit.primitive, ray)
-                    {
-                        best = hit;
-                    }
-                }
-                if best.t < before.t {
-                    end = limit(simd, best.t);
-                }
+            let before = best.t;
+            improve(simd, tree, block, child.count(), (ray, &shear), from, &mut best);
+            if best.t < before {
+                end = limit(simd, best.t);
             }
         }
         let behind = beyond(best.t);
@@ -144,5 +154,35 @@ pub(super) fn closest<S: Simd>(simd: S, tree: &Tree, ray: &PreparedRay) -> Optio
 /// Whether `ray` has a hit.
 #[inline(always)]
 pub(super) fn any<S: Simd>(simd: S, tree: &Tree, ray: &PreparedRay) -> bool {
-    closest(simd, tree, ray).is_some()
+    let slabs = Slabs::new(simd, ray);
+    let shear = ShearLanes::new(simd, ray);
+    let (from, until) = (start_of(ray), end_of(ray));
+    let end = limit(simd, until.t);
+    let mut stack: heapless::Vec<u32, STACK> = heapless::Vec::new();
+    let Some(mut child) = tree.root else { return false };
+    loop {
+        if !child.is_block() {
+            let Some(node) = tree.nodes.get(child.0 as usize) else { return false };
+            let mut lanes = slabs.meet(simd, node, end).lanes;
+            if lanes != 0 {
+                let children = &node.rows[CHILDREN];
+                child = Child(children[lanes.trailing_zeros() as usize & 7]);
+                lanes &= lanes - 1;
+                while lanes != 0 {
+                    let _ = stack.push(children[lanes.trailing_zeros() as usize & 7]);
+                    lanes &= lanes - 1;
+                }
+                continue;
+            }
+        } else {
+            let Some(block) = tree.block(child) else { return false };
+            let mut best = until;
+            improve(simd, tree, block, child.count(), (ray, &shear), from, &mut best);
+            if best.primitive != until.primitive {
+                return true;
+            }
+        }
+        let Some(next) = stack.pop() else { return false };
+        child = Child(next);
+    }
 }

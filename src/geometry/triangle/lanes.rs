@@ -4,7 +4,7 @@
 use fearless_simd::{Simd, SimdBase, SimdMask, f32x8, mask32x8};
 
 use super::filter::{SMALL, TOLERANCE, U, UNDERFLOW};
-use crate::geometry::{PreparedRay, ray::LIFT};
+use crate::geometry::{PreparedRay, beyond, ray::LIFT};
 
 /// A ray as the test of eight triangles wants it.
 #[derive(Clone, Copy, Debug)]
@@ -33,8 +33,10 @@ pub(crate) struct Possible<S: Simd> {
 pub(crate) struct Crossings<S: Simd> {
     /// The ray's parameters.
     pub(crate) t: f32x8<S>,
-    /// A bit for each that is hit, with a proven parameter.
+    /// A bit for each that is hit, with a proven parameter within the limits.
     pub(crate) proven: u32,
+    /// A bit for each that may be hit, but within the limits only as far as is known.
+    pub(crate) open: u32,
     /// A bit for each determinant above zero.
     positive: u32,
     backward: bool,
@@ -75,9 +77,15 @@ impl<S: Simd> ShearLanes<S> {
         Possible { edges: [u, v, w], depths: [az, bz, cz], spread, bound, least, greatest, lanes }
     }
 
-    /// Where the triangles are hit.
+    /// Where the triangles are hit between the limits; `lanes` are those that may be hit.
     #[inline(always)]
-    pub(crate) fn place(&self, simd: S, possible: &Possible<S>) -> Crossings<S> {
+    pub(crate) fn place(
+        &self,
+        simd: S,
+        possible: &Possible<S>,
+        lanes: u32,
+        (t_min, t_max): (f32, f32),
+    ) -> Crossings<S> {
         let &Possible { edges: [u, v, w], depths: [az, bz, cz], spread, bound, least, greatest, .. } = possible;
         let determinant = (u + v) + w;
         let (e1, e2) = (bz - az, cz - az);
@@ -94,9 +102,18 @@ impl<S: Simd> ShearLanes<S> {
         let narrow = (edge * 16.0).simd_lt(area) & area.simd_lt(1.0e30);
         let near = (error * (8.0 * U)).simd_lt(limit) & limit.simd_gt(SMALL);
         let normal = magnitude.simd_gt(SMALL) & size.simd_gt(1.0e-30) & size.simd_lt(1.0e37);
-        let proven = (hit & narrow & near & normal).to_bitmask() as u32;
+        let within = t.simd_ge(t_min) & t.simd_le(t_max);
+        let placed = hit & narrow & near & normal;
+        let mut open = lanes & !placed.to_bitmask() as u32;
+        if open != 0 {
+            let error = ((error * (8.0 * U) + 1.0e-36) / area + magnitude * (8.0 * U) + 1.0e-36) * self.inverse.abs();
+            let error = error + 1.0e-36;
+            let outside = (t + error).simd_lt(t_min) | (t - error).simd_gt(beyond(t_max));
+            open &= !(hit & narrow & outside).to_bitmask() as u32;
+        }
         let positive = determinant.simd_gt(f32x8::splat(simd, 0.0)).to_bitmask() as u32;
-        Crossings { t, proven, positive, backward: self.inverse <= 0.0 }
+        let proven = (placed & within).to_bitmask() as u32 & lanes;
+        Crossings { t, proven, open, positive, backward: self.inverse <= 0.0 }
     }
 }
 
