@@ -84,14 +84,12 @@ impl<P: Triangles> WideBvh<P> {
     /// The first hit of the ray.
     #[must_use]
     pub fn closest_hit(&self, ray: &Ray) -> Option<Hit> {
-        let ray = &ray.prepare()?;
         dispatch!(self.level, simd => walk::closest(simd, &self.tree, ray))
     }
 
     /// Whether the ray hits anything.
     #[must_use]
     pub fn any_hit(&self, ray: &Ray) -> bool {
-        let Some(ray) = &ray.prepare() else { return false };
         dispatch!(self.level, simd => walk::any(simd, &self.tree, ray))
     }
 }

@@ -9,7 +9,7 @@ use super::{
     tree::{Block, Tree},
 };
 use crate::{
-    geometry::{PreparedRay, ShearLanes, beyond},
+    geometry::{PreparedRay, Ray, ShearLanes, beyond},
     primitives::{Hit, Sides, Span},
     query::{end_of, start_of},
 };
@@ -116,7 +116,9 @@ fn improve<S: Simd>(
 
 /// The least hit of `ray`.
 #[inline(always)]
-pub(super) fn closest<S: Simd>(simd: S, tree: &Tree, ray: &PreparedRay) -> Option<Hit> {
+pub(super) fn closest<S: Simd>(simd: S, tree: &Tree, ray: &Ray) -> Option<Hit> {
+    let prepared = ray.prepare();
+    let ray = prepared.as_ref()?;
     let slabs = Slabs::new(simd, ray);
     let shear = ShearLanes::new(simd, ray);
     let from = start_of(ray);
@@ -153,7 +155,9 @@ pub(super) fn closest<S: Simd>(simd: S, tree: &Tree, ray: &PreparedRay) -> Optio
 
 /// Whether `ray` has a hit.
 #[inline(always)]
-pub(super) fn any<S: Simd>(simd: S, tree: &Tree, ray: &PreparedRay) -> bool {
+pub(super) fn any<S: Simd>(simd: S, tree: &Tree, ray: &Ray) -> bool {
+    let prepared = ray.prepare();
+    let Some(ray) = prepared.as_ref() else { return false };
     let slabs = Slabs::new(simd, ray);
     let shear = ShearLanes::new(simd, ray);
     let (from, until) = (start_of(ray), end_of(ray));

@@ -42,6 +42,12 @@ pub(crate) struct Crossings<S: Simd> {
     backward: bool,
 }
 
+/// The greatest parameter that is not [`beyond`] any less than `t`.
+#[inline(always)]
+fn before(t: f32) -> f32 {
+    -beyond(-t)
+}
+
 impl<S: Simd> ShearLanes<S> {
     #[inline(always)]
     pub(crate) fn new(simd: S, ray: &PreparedRay) -> Self {
@@ -109,7 +115,11 @@ impl<S: Simd> ShearLanes<S> {
             let error = ((error * (8.0 * U) + 1.0e-36) / area + magnitude * (8.0 * U) + 1.0e-36) * self.inverse.abs();
             let error = error + 1.0e-36;
             let outside = (t + error).simd_lt(t_min) | (t - error).simd_gt(beyond(t_max));
-            open &= !(hit & narrow & outside).to_bitmask() as u32;
+            // A crossing lies between the corners' parameters along the major axis.
+            let [a, b, c] = possible.depths.map(|depth| depth * self.inverse);
+            let (first, last) = (a.min(b).min(c), a.max(b).max(c));
+            let beside = first.simd_gt(beyond(t_max)) | last.simd_lt(before(t_min));
+            open &= !((hit & narrow & outside) | beside).to_bitmask() as u32;
         }
         let positive = determinant.simd_gt(f32x8::splat(simd, 0.0)).to_bitmask() as u32;
         let proven = (placed & within).to_bitmask() as u32 & lanes;
