@@ -117,7 +117,7 @@ fn improve<S: Simd>(
 /// The least hit of `ray`.
 #[inline(always)]
 pub(super) fn closest<S: Simd>(simd: S, tree: &Tree, ray: &Ray) -> Option<Hit> {
-    let prepared = ray.prepare();
+    let prepared = PreparedRay::here(ray);
     let ray = prepared.as_ref()?;
     let slabs = Slabs::new(simd, ray);
     let shear = ShearLanes::new(simd, ray);
@@ -156,7 +156,7 @@ pub(super) fn closest<S: Simd>(simd: S, tree: &Tree, ray: &Ray) -> Option<Hit> {
 /// Whether `ray` has a hit.
 #[inline(always)]
 pub(super) fn any<S: Simd>(simd: S, tree: &Tree, ray: &Ray) -> bool {
-    let prepared = ray.prepare();
+    let prepared = PreparedRay::here(ray);
     let Some(ray) = prepared.as_ref() else { return false };
     let slabs = Slabs::new(simd, ray);
     let shear = ShearLanes::new(simd, ray);
