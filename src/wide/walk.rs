@@ -108,7 +108,7 @@ fn improve<S: Simd>(
     while open != 0 {
         let lane = open.trailing_zeros() as usize & 7;
         open &= open - 1;
-        if let Some(hit) = tree.intersect(block, (lane, count), ray, &Span::new(from, *best)) {
+        if let Some(hit) = tree.certify(block, (lane, count), crossings.is_front(lane), ray, &Span::new(from, *best)) {
             *best = hit;
         }
     }

@@ -37,6 +37,8 @@ pub(crate) struct Crossings<S: Simd> {
     pub(crate) proven: u32,
     /// A bit for each that may be hit, but within the limits only as far as is known.
     pub(crate) open: u32,
+    /// A bit for each that is hit, wherever that is.
+    hit: u32,
     /// A bit for each determinant above zero.
     positive: u32,
     backward: bool,
@@ -123,7 +125,7 @@ impl<S: Simd> ShearLanes<S> {
         }
         let positive = determinant.simd_gt(f32x8::splat(simd, 0.0)).to_bitmask() as u32;
         let proven = (placed & within).to_bitmask() as u32 & lanes;
-        Crossings { t, proven, open, positive, backward: self.inverse <= 0.0 }
+        Crossings { t, proven, open, hit: hit.to_bitmask() as u32, positive, backward: self.inverse <= 0.0 }
     }
 }
 
@@ -132,5 +134,11 @@ impl<S: Simd> Crossings<S> {
     #[inline(always)]
     pub(crate) fn front(&self) -> u32 {
         if self.backward { !self.positive } else { self.positive }
+    }
+
+    /// Whether the triangle of a lane that is certainly hit is hit from its front; none if that is open.
+    #[inline(always)]
+    pub(crate) fn is_front(&self, lane: usize) -> Option<bool> {
+        (self.hit >> lane & 1 != 0).then_some(self.front() >> lane & 1 != 0)
     }
 }
