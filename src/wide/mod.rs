@@ -1,11 +1,13 @@
 //! The fastest structure on hosts (feature `std`): eight boxes or triangles at a time.
 
+mod batch;
 mod binary;
 mod build;
 mod collapse;
 mod node;
 mod simd;
 mod slabs;
+mod stack;
 mod tree;
 mod walk;
 
@@ -91,6 +93,16 @@ impl<P: Triangles> WideBvh<P> {
     #[must_use]
     pub fn any_hit(&self, ray: &Ray) -> bool {
         dispatch!(self.level, simd => walk::any(simd, &self.tree, ray))
+    }
+
+    /// The first hits of all rays, as far as there is room for them.
+    pub fn closest_hits(&self, rays: &[Ray], hits: &mut [Option<Hit>]) {
+        dispatch!(self.level, simd => batch::closest(simd, &self.tree, rays, hits));
+    }
+
+    /// Whether the rays hit anything, as far as there is room for it.
+    pub fn any_hits(&self, rays: &[Ray], hits: &mut [bool]) {
+        dispatch!(self.level, simd => batch::any(simd, &self.tree, rays, hits));
     }
 }
 

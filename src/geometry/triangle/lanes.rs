@@ -67,7 +67,7 @@ impl<S: Simd> ShearLanes<S> {
 
     /// Which of the triangles may be hit; the corners' coordinates stand in the order of `axes`.
     #[inline(always)]
-    pub(crate) fn test(&self, simd: S, [a, b, c]: [[f32x8<S>; 3]; 3]) -> Possible<S> {
+    pub(crate) fn test(&self, [a, b, c]: [[f32x8<S>; 3]; 3]) -> Possible<S> {
         let [ox, oy, oz] = self.origin;
         let [sx, sy] = self.slope;
         let (az, bz, cz) = (a[2] - oz, b[2] - oz, c[2] - oz);
@@ -80,7 +80,6 @@ impl<S: Simd> ShearLanes<S> {
         // A NaN makes the bound one, too.
         let (least, greatest) = (u.min(v).min(w), u.max(v).max(w));
         let missed = greatest.simd_gt(bound) & least.simd_lt(-bound);
-        let _ = simd;
         let lanes = !missed.to_bitmask() as u32 & 0xff;
         Possible { edges: [u, v, w], depths: [az, bz, cz], spread, bound, least, greatest, lanes }
     }
