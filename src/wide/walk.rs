@@ -172,7 +172,7 @@ pub(super) fn descend_anyhow(node: &Node, mut lanes: u32, stack: &mut Stack) -> 
     let first = Child(children[lane(lanes)]);
     lanes &= lanes.wrapping_sub(1);
     while lanes != 0 {
-        stack.push(Waiting::new(0.0, children[lane(lanes)]));
+        stack.push(Waiting::new(f32::NEG_INFINITY, children[lane(lanes)]));
         lanes &= lanes - 1;
     }
     first
