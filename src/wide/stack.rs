@@ -1,5 +1,5 @@
 use super::{
-    binary::MAX_DEPTH,
+    build::MAX_DEPTH,
     node::{Child, WIDTH},
 };
 
