@@ -134,6 +134,12 @@ impl<'a> Mesh<'a> {
         self.indices
     }
 
+    /// The sides from which the triangles can be hit.
+    #[must_use]
+    pub const fn sides(&self) -> Sides {
+        self.sides
+    }
+
     /// The triangle of this number; one without area if there is none.
     #[inline(always)]
     #[must_use]

@@ -15,6 +15,7 @@ mod proximity;
 mod reordered;
 mod spheres;
 mod surface;
+mod triangles;
 
 pub use counted::Counted;
 pub use from_fn::{FromFn, from_fn};
@@ -28,6 +29,7 @@ pub use reordered::{Order, OrderError, Renumbering, Reordered};
 pub use spheres::{SphereError, Spheres};
 pub use surface::Surface;
 pub(crate) use surface::unit;
+pub use triangles::Triangles;
 
 use crate::geometry::{Aabb, PreparedRay, Ray};
 

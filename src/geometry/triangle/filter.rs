@@ -10,16 +10,16 @@ use crate::{
 };
 
 /// Half an ulp of 1.
-const U: f32 = 1.0 / 16_777_216.0;
+pub(super) const U: f32 = 1.0 / 16_777_216.0;
 
 /// 2^-125: covers what underflow can take from an edge function.
-const UNDERFLOW: f32 = 2.0 * f32::MIN_POSITIVE;
+pub(super) const UNDERFLOW: f32 = 2.0 * f32::MIN_POSITIVE;
 
 /// The relative error within which `t` is certified, 2^-17.
-const TOLERANCE: f32 = 1.0 / 131_072.0;
+pub(super) const TOLERANCE: f32 = 1.0 / 131_072.0;
 
 /// 2^-100: smaller magnitudes are left to the tiers with a wider range.
-const SMALL: f32 = 7.888_609e-31;
+pub(super) const SMALL: f32 = 7.888_609e-31;
 
 /// What `f32` can prove of the edge functions' signs.
 pub(super) enum Verdict {
