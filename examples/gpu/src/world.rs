@@ -127,7 +127,7 @@ impl<'p, 'a> World<'p, 'a> {
         }
     }
 
-    /// The number of the primitive at a place, for whoever reads an answer without `t`.
+    /// The scene itself, for queries and pictures.
     #[must_use]
     pub fn as_caster(&self) -> &(dyn Caster + Sync) {
         match self {
