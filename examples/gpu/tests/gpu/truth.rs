@@ -82,7 +82,7 @@ fn real_meshes_are_answered_as_in_double_precision() {
             Plan::Bvh(bvh::Options { reinsertions: 0, ..bvh::Options::balanced() }),
         ];
         let some = if triangles.len() > LARGE { vec![quick[index % 2]] } else { plans().to_vec() };
-        for plan in some {
+        for (step, plan) in some.into_iter().enumerate() {
             let words = baker(&vertices, &triangles, &plan, Form::Plain).unwrap().finish();
             let asset = Asset::from_words(&words).unwrap();
             let parts = Parts::read(&asset).unwrap();
@@ -97,6 +97,13 @@ fn real_meshes_are_answered_as_in_double_precision() {
                 certain += usize::from(fault.is_some());
                 faults += usize::from(fault == Some(true));
             }
+            // As another GPU may round: all of one structure, and some of the others.
+            let some = rays.len() / if (index + step).is_multiple_of(3) { 1 } else { 8 };
+            let roughly = Uploaded::new(device, &asset, None).unwrap().roughly();
+            let (rough, rough_tally) =
+                settle(&world, &rays[..some], &roughly.cast(&rays[..some], Query::Closest), Query::Closest);
+            assert!(rough.iter().zip(&hits).all(|(a, b)| bits(*a) == bits(*b)), "{name}");
+            assert_eq!(rough_tally.refuted, 0, "{name}");
             let (any, any_tally) = settle(&world, &rays, &uploaded.cast(&rays, Query::Any), Query::Any);
             assert!(any.iter().zip(&hits).all(|(any, hit)| any.is_some() == hit.is_some()), "{name}");
             let share = |finished: usize| 100.0 * finished as f64 / rays.len() as f64;
