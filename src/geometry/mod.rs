@@ -29,6 +29,8 @@ pub(crate) use ray::{AxisView, beyond, descends, slack};
 pub use ray::{PreparedRay, Ray};
 pub use sphere::Sphere;
 pub use transform::{Singular, Transform};
+#[cfg(feature = "std")]
+pub(crate) use triangle::ShearLanes;
 pub(crate) use triangle::intersect as intersect_triangle;
 pub use triangle::{Crossing, Triangle};
 pub use volume::Volume;
