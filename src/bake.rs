@@ -202,6 +202,7 @@ impl Baker {
     ///
     /// If it has 2^32 words or more.
     #[must_use]
+    #[expect(clippy::expect_used, reason = "said above; what bakes is a host")]
     pub fn finish(self) -> Vec<u32> {
         let number = |n: usize| u32::try_from(n).expect("an asset has less than 2^32 words");
         let mut words = vec![MAGIC, BYTE_ORDER, VERSION, 0, 0, number(self.sections.len())];
