@@ -151,6 +151,13 @@ impl Cluster {
         done
     }
 
+    /// How many tiles each worker says it has done.
+    pub fn done_by_workers(&self) -> Vec<u32> {
+        let status = self.run("status");
+        let tiles = status.lines().filter_map(|line| line.split(" threads, ").nth(1)?.split(' ').next());
+        tiles.filter_map(|tiles| tiles.parse().ok()).collect()
+    }
+
     pub fn wait_until(&self, mut condition: impl FnMut() -> bool) {
         let begun = Instant::now();
         while !condition() {
