@@ -174,7 +174,6 @@ fn strangers_are_not_let_in() {
 #[test]
 fn nonsense_is_refused_in_one_line() {
     let cluster = Cluster::new();
-    fs::write(cluster.path("mesh.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
     fs::write(cluster.path("odd"), [0; 25]).unwrap();
     for (arguments, why) in [
         ("submit none.hits", "no such file"),
