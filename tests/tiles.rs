@@ -191,6 +191,39 @@ fn entries_are_few_and_small() {
     }
 }
 
+/// Tiles beside and between the strands of a coil are told to be empty, wherever planes lie.
+#[test]
+fn tiles_that_see_nothing_are_empty() {
+    let point = |along: usize, around: usize| {
+        let (along, around) = (along as f32 * 0.08, around as f32 * std::f32::consts::TAU / 6.0);
+        let distance = 1.0 + 0.1 * around.cos();
+        Vec3::new(distance * along.cos(), 0.12 * along + 0.1 * around.sin(), distance * along.sin())
+    };
+    let vertices: Vec<Vec3> = (0..200 * 6).map(|i| point(i / 6, i % 6)).collect();
+    let triangles: Vec<[u16; 3]> = (0..199 * 6)
+        .flat_map(|i| {
+            let (a, b) = (i, i / 6 * 6 + (i + 1) % 6);
+            [[a, b, a + 6], [b, b + 6, a + 6]]
+        })
+        .collect();
+    let mesh = Mesh::new(&vertices, triangles.as_slice()).unwrap();
+    let words = bake::build(&mesh, &Plan::KdTree(Default::default())).unwrap();
+    let scene = Scene::new(Structure::open(hitscan::asset::Kind::KdTree, &words).unwrap(), &mesh).unwrap();
+    let camera = Camera::framing(&scene.bounds(), Vec3::new(0.1, 0.2, 1.0), Vec3::Y);
+    let (mut empty, mut told) = (0, 0);
+    for tile in Renderer::new(&scene, camera, 128, 128).tiles(4, 4) {
+        let sees_something = tile.pixels().any(|(x, y)| {
+            let mut points = (0..16).map(|i| (x as f32 + (i % 4) as f32 / 3.0, y as f32 + (i / 4) as f32 / 3.0));
+            points.any(|(x, y)| scene.any_hit(&camera.ray(x, y, 128, 128)))
+        });
+        let entries = scene.enter(&camera.bundle(&tile, 128, 128).unwrap());
+        assert!(!(sees_something && entries.is_empty()), "{tile:?}");
+        empty += u32::from(!sees_something);
+        told += u32::from(entries.is_empty());
+    }
+    assert!(empty > 300 && told * 10 > empty * 9, "of {empty} empty tiles {told} are told");
+}
+
 #[test]
 fn pictures_in_parts_are_the_picture() {
     let mut random = Random::new(44);

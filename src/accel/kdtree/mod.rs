@@ -6,6 +6,7 @@
 
 mod build;
 mod compact;
+mod enter;
 mod form;
 mod node;
 mod open;
@@ -179,7 +180,7 @@ impl<'a> Accelerator for KdTree<'a> {
 
     /// One entry: a second one costs each ray more than it spares.
     fn enter(&self, bundle: &Bundle) -> Entries {
-        Entries::find(self, bundle, 1)
+        self.entries(bundle)
     }
 
     #[inline]
