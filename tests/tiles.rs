@@ -12,7 +12,7 @@ use hitscan::{
     geometry::{Aabb, Bundle},
     glam::Vec3,
     primitives::{Primitives, from_fn},
-    render::{Camera, Renderer, Tile},
+    render::{Camera, Light, Renderer, Tile},
 };
 
 /// Cameras inside, near and far, along axes and not, with and without perspective, and some that see nothing.
@@ -233,7 +233,11 @@ fn pictures_in_parts_are_the_picture() {
     let scene = Scene::new(Structure::open(hitscan::asset::Kind::KdTree, &words).unwrap(), &mesh).unwrap();
     for (width, height) in [(1, 1), (9, 70), (130, 67), (64, 64), (0, 5), (5, 0)] {
         let camera = Camera::framing(&scene.bounds(), Vec3::new(0.3, 0.2, 1.0), Vec3::Y);
-        let renderer = Renderer::new(&scene, camera, width, height).with_samples(2).with_bounces(1);
+        // One light more than patches remember occluders of.
+        let lights = [Vec3::X, Vec3::Y, Vec3::NEG_X, Vec3::NEG_Z, Vec3::NEG_ONE]
+            .map(|direction| Light::directional(direction + Vec3::splat(0.1), Vec3::ONE));
+        let renderer =
+            Renderer::new(&scene, camera, width, height).with_samples(2).with_bounces(1).with_lights(&lights);
         let plain: Vec<Vec3> = Tile { x: 0, y: 0, width, height }.pixels().map(|(x, y)| renderer.pixel(x, y)).collect();
 
         let mut filled = vec![Vec3::NAN; plain.len()];
@@ -317,4 +321,36 @@ fn tiles_of_any_numbers_are_filled() {
             }
         }
     }
+}
+
+/// What is tried first, even if it is no primitive, changes no answer, and what stops a ray is remembered.
+#[test]
+fn shadows_are_the_same_whatever_is_tried_first() {
+    let mut random = Random::new(46);
+    let (mut stopped, mut again) = (0, 0);
+    for round in 0..60 {
+        let family = round % common::FAMILIES;
+        let (vertices, triangles) = adversarial_mesh(&mut random, family, 60);
+        let mesh = Mesh::new(&vertices, triangles.as_slice()).unwrap();
+        for (name, plan) in plans::presets() {
+            let words = bake::build(&mesh, &plan).unwrap();
+            let scene = Scene::new(Structure::open(plan.kind().unwrap(), &words).unwrap(), &mesh).unwrap();
+            for _ in 0..20 {
+                let ray =
+                    Ray::between(point(&mut random, family), random.pick(&vertices)).up_to(random.pick(&[0.5, 2.0]));
+                let first = random.pick(&[None, Some(0), Some(31), Some(triangles.len() as u32), Some(u32::MAX)]);
+                let mut last = first;
+                let is_stopped = scene.any_hit(&ray);
+                assert_eq!(scene.any_hit_near(&ray, &mut last), is_stopped, "{name}: {ray:?} {first:?}");
+                assert!(is_stopped || last == first);
+                if is_stopped {
+                    stopped += 1;
+                    let found = last;
+                    assert!(scene.any_hit_near(&ray, &mut last));
+                    again += u32::from(last == found);
+                }
+            }
+        }
+    }
+    assert!(stopped > 1_000 && again == stopped, "{stopped} {again}");
 }
