@@ -354,3 +354,40 @@ fn shadows_are_the_same_whatever_is_tried_first() {
     }
     assert!(stopped > 1_000 && again == stopped, "{stopped} {again}");
 }
+
+/// What is refined is what differs from a neighbour in the rough picture, once, with the light of all samples.
+#[test]
+fn edges_alone_are_refined() {
+    let (vertices, triangles) = common::meshes::random(12, 0.6);
+    let mesh = Mesh::new(&vertices, triangles.as_slice()).unwrap();
+    let scene = Scene::new(List::new(&mesh).unwrap(), &mesh).unwrap();
+    let camera = Camera::framing(&scene.bounds(), Vec3::new(0.3, 0.2, 1.0), Vec3::Y);
+    let renderer = Renderer::new(&scene, camera, 50, 37);
+    for tile in [Tile { x: 0, y: 0, width: 50, height: 37 }, Tile { x: 0, y: 9, width: 50, height: 11 }] {
+        let mut rough = vec![[0_u8; 3]; tile.area()];
+        renderer.fill(tile, &mut rough).unwrap();
+        let at = |x: u32, y: u32| {
+            let inside = x < tile.width && y >= tile.y && y < tile.y + tile.height;
+            inside.then(|| rough[((y - tile.y) * tile.width + x) as usize])
+        };
+        let differ = |a: &[u8; 3], b: &[u8; 3]| a[0].abs_diff(b[0]) > 8;
+        let fine = renderer.with_samples(3);
+        let mut left: Vec<_> = tile
+            .pixels()
+            .filter(|&(x, y)| {
+                let beside = [(x.wrapping_sub(1), y), (x + 1, y), (x, y.wrapping_sub(1)), (x, y + 1)];
+                beside.into_iter().any(|(u, v)| at(u, v).is_some_and(|other| differ(&at(x, y).unwrap(), &other)))
+            })
+            .collect();
+        assert!(left.len() > 50 && left.len() * 3 < tile.area(), "{} of {}", left.len(), tile.area());
+        for ((x, y), light) in fine.refined(tile, &rough, differ) {
+            let place = left.iter().position(|&pixel| pixel == (x, y)).expect("an edge, once");
+            left.swap_remove(place);
+            assert_eq!(light, fine.pixel(x, y));
+        }
+        assert!(left.is_empty());
+        // Of a picture that is cut short, what is there.
+        assert!(fine.refined(tile, &rough[..70], differ).all(|((x, y), _)| (y - tile.y) * tile.width + x < 70));
+        assert_eq!(fine.refined(tile, &[0_u8; 0], |_, _| true).count(), 0);
+    }
+}

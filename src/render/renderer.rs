@@ -27,7 +27,7 @@ impl fmt::Display for TooShort {
 impl core::error::Error for TooShort {}
 
 /// Pixels that a patch is wide and high.
-const PATCH: u32 = 8;
+pub(super) const PATCH: u32 = 8;
 
 /// A picture of a scene, computed where it is looked at.
 ///
