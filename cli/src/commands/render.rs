@@ -60,7 +60,7 @@ pub struct Render {
     /// The terms of light to compute, separated by commas
     #[arg(long, value_name = "TERMS", value_delimiter = ',', default_values = ["all"])]
     terms: Vec<Term>,
-    /// Shade the triangles of a mesh or an asset as if they were curved, but for sharp edges
+    /// Shade the triangles of a mesh or an asset as if they were curved, but for sharp edges; an asset with normals is so anyway
     #[arg(long)]
     smooth: bool,
     /// No plate below a mesh or an asset
@@ -135,7 +135,10 @@ impl Render {
         let view = source.view(path)?;
         let built = view.build(self.structure.structure, self.structure.preset)?;
         let normals = if self.smooth { normals_by_place(&view.mesh) } else { Vec::new() };
-        let shaded = Smooth::new(view.mesh, &normals);
+        let shaded = match view.normals {
+            Some(normals) if !self.smooth => Smooth::packed(view.mesh, normals),
+            _ => Smooth::new(view.mesh, &normals),
+        };
         let renumbered = view.renumbered(shaded)?;
         let scene = match &renumbered {
             Some(triangles) => built.scene(triangles)?,
