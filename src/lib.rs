@@ -172,6 +172,8 @@ pub mod bake;
 pub mod display;
 #[cfg(feature = "std")]
 pub mod parallel;
+#[cfg(feature = "std")]
+pub mod wide;
 
 pub mod error;
 

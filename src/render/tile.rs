@@ -20,7 +20,7 @@ impl Tile {
     }
 
     /// It in tiles of at most this size.
-    pub(super) fn parts(self, width: u32, height: u32) -> impl Iterator<Item = Self> {
+    pub fn parts(self, width: u32, height: u32) -> impl Iterator<Item = Self> {
         let Self { x, y, .. } = self;
         Tiles::new(self.width, self.height, width, height).map(move |part| Self {
             x: x.saturating_add(part.x),

@@ -8,7 +8,7 @@ use hitscan::{
     accel::Entries,
     geometry::{Aabb, Bundle},
     primitives::Surface,
-    render::Caster,
+    render::{Caster, Material},
 };
 
 /// The most reflections that can be told apart, and one for the camera's own rays.
@@ -51,6 +51,15 @@ impl Tally {
     /// All rays.
     pub fn rays(&self) -> u64 {
         self.closest.iter().chain(&self.shadow).sum()
+    }
+
+    /// Adds what was counted elsewhere.
+    pub fn add(&mut self, other: &Self) {
+        for depth in 0..DEPTHS {
+            self.closest[depth] += other.closest[depth];
+            self.shadow[depth] += other.shadow[depth];
+        }
+        self.seconds += other.seconds;
     }
 }
 
@@ -133,6 +142,10 @@ impl<S: Caster + ?Sized> Caster for Counted<'_, S> {
 
     fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
         self.scene.surface(ray, hit)
+    }
+
+    fn material(&self, hit: &Hit) -> Option<Material> {
+        self.scene.material(hit)
     }
 
     fn bounds(&self) -> Aabb {

@@ -4,7 +4,7 @@ use hitscan::{
     geometry::{Aabb, Bundle},
     glam::Vec3,
     primitives::Surface,
-    render::Caster,
+    render::{Caster, Material},
 };
 
 use crate::failure::Failure;
@@ -117,6 +117,10 @@ impl<S: Caster + ?Sized> Caster for Grounded<'_, S> {
         } else {
             self.scene.surface(ray, hit)
         }
+    }
+
+    fn material(&self, hit: &Hit) -> Option<Material> {
+        if hit.primitive == self.number { None } else { self.scene.material(hit) }
     }
 
     fn bounds(&self) -> Aabb {
