@@ -4,11 +4,14 @@
 use std::{vec, vec::Vec};
 
 use super::{
-    binary::{Binary, LEAF_SIZE},
+    binary::Binary,
     node::{Child, Node, TRIANGLE_WORDS, WIDTH},
     tree::Tree,
 };
 use crate::geometry::Triangle;
+
+/// The most triangles in a block.
+const LEAF_SIZE: u32 = WIDTH as u32;
 
 /// What a ray's visit to a node costs.
 const NODE: f32 = 1.0;

@@ -30,20 +30,35 @@ pub(super) fn row<S: Simd>(simd: S, words: &[u32; WIDTH]) -> f32x8<S> {
     f32x8::load_array_ref(simd, bytemuck::must_cast_ref(words))
 }
 
+/// What [`Slabs`] need besides the ray: found out once for each.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sides {
+    near: [usize; 3],
+    slack: f32,
+}
+
+impl Sides {
+    #[inline(always)]
+    pub(super) fn of(ray: &PreparedRay) -> Self {
+        let [x, y, z, _] = &ray.views;
+        let near = |axis: usize, ascends: bool| 2 * axis + usize::from(!ascends);
+        let near = [near(0, x.ascends()), near(1, y.ascends()), near(2, z.ascends())];
+        Self { near, slack: slack(ray.ray().t_min) }
+    }
+}
+
 impl<S: Simd> Slabs<S> {
     #[inline(always)]
-    pub(super) fn new(simd: S, ray: &PreparedRay) -> Self {
+    pub(super) fn new(simd: S, ray: &PreparedRay, sides: Sides) -> Self {
         let [x, y, z, _] = &ray.views;
         let splat = |x: f32| f32x8::splat(simd, x);
-        let t_min = ray.ray().t_min;
-        let near = |axis: usize, ascends: bool| 2 * axis + usize::from(!ascends);
         Self {
-            near: [near(0, x.ascends()), near(1, y.ascends()), near(2, z.ascends())],
+            near: sides.near,
             origin: [x, y, z].map(|view| splat(view.origin)),
             entry: [x, y, z].map(|view| splat(view.entry)),
             exit: [x, y, z].map(|view| splat(view.exit)),
-            t_min: splat(t_min),
-            slack: splat(slack(t_min)),
+            t_min: splat(ray.ray().t_min),
+            slack: splat(sides.slack),
         }
     }
 

@@ -46,20 +46,23 @@ impl Tree {
         self.masks.is_empty() || self.masks.get(number as usize).is_some_and(|mask| mask & ray.ray().mask != 0)
     }
 
-    /// The hit with a triangle of a block, by all tiers.
+    /// The hit with a triangle of a block, by the slow tiers; `front` is known if it is certainly hit.
     #[cold]
     #[inline(never)]
-    pub(super) fn intersect(
+    pub(super) fn certify(
         &self,
         block: &Block,
         (lane, count): (usize, usize),
+        front: Option<bool>,
         ray: &PreparedRay,
         span: &Span,
     ) -> Option<Hit> {
         let word = |row: usize| block.get(row * count + lane).copied().unwrap_or(0);
         let corner = |i: usize| [3 * i, 3 * i + 1, 3 * i + 2].map(|row| f32::from_bits(word(row))).into();
-        let crossing = Triangle::new(corner(0), corner(1), corner(2)).intersect(ray, span.t_min(), span.t_max())?;
-        let is_hit = crossing.front || self.sides == Sides::Both;
-        if is_hit { span.accept(crossing.t, word(TRIANGLE_WORDS - 1)) } else { None }
+        let triangle = Triangle::new(corner(0), corner(1), corner(2));
+        let crossing = triangle.decide(ray, front)?;
+        let number = word(TRIANGLE_WORDS - 1);
+        let is_hit = (crossing.front || self.sides == Sides::Both) && self.is_seen(number, ray);
+        if is_hit { span.accept(crossing.t, number) } else { None }
     }
 }

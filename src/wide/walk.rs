@@ -1,84 +1,112 @@
 //! One ray's way through the tree.
 
-use fearless_simd::{Simd, SimdBase, SimdMask, f32x8};
+use fearless_simd::{Simd, SimdBase};
 
 use super::{
-    binary::MAX_DEPTH,
     node::{CHILDREN, Child, Node, TRIANGLE_WORDS, WIDTH},
-    slabs::{Met, Slabs, limit, row},
+    slabs::{self, Met, Slabs, limit, row},
+    stack::{Stack, Waiting},
     tree::{Block, Tree},
 };
 use crate::{
-    geometry::{PreparedRay, ShearLanes, beyond},
+    geometry::{PreparedRay, Ray, ShearLanes, beyond},
     primitives::{Hit, Sides, Span},
     query::{end_of, start_of},
 };
 
-/// The most children that wait: of each node on the way all but one, and the last one's.
-const STACK: usize = (WIDTH - 1) * MAX_DEPTH as usize + WIDTH;
-
-/// A child that waits: where it is entered in the upper half, so that nearer ones are less, and what it is in the lower.
-type Waiting = u64;
-
-/// What of the tree is still to be looked at.
-type Stack = heapless::Vec<Waiting, STACK>;
-
+/// A node's children that are met, at least one: the one to go on with; the others wait.
 #[inline(always)]
-fn waiting(enter: f32, child: u32) -> Waiting {
-    u64::from(enter.to_bits()) << 32 | u64::from(child)
-}
-
-/// A node's children that are met: the one to go on with; the others are pushed.
-#[inline(always)]
-fn descend<S: Simd>(node: &Node, met: &Met<S>, stack: &mut Stack) -> Child {
+pub(super) fn descend<S: Simd>(node: &Node, met: &Met<S>, stack: &mut Stack) -> Child {
     let children = &node.rows[CHILDREN];
     let mut lanes = met.lanes;
-    let mut next = || {
-        let lane = lanes.trailing_zeros() as usize & 7;
-        lanes &= lanes.wrapping_sub(1);
-        lane
-    };
-    let first = next();
-    if met.lanes & met.lanes.wrapping_sub(1) == 0 {
+    let first = lane(lanes);
+    lanes &= lanes.wrapping_sub(1);
+    if lanes == 0 {
         return Child(children[first]);
     }
     let enter: &[f32; WIDTH] = met.enter.as_array();
-    let key = |lane: usize| waiting(enter[lane], children[lane]);
-    let (a, b) = (key(first), key(next()));
-    let (mut near, far) = (a.min(b), a.max(b));
-    let _ = stack.push(far);
-    let mut left = met.lanes.count_ones() - 2;
-    while left > 0 {
-        let other = key(next());
-        let _ = stack.push(other.max(near));
-        near = near.min(other);
-        // The nearer ones come to lie above.
-        if let Some([.., below, above]) = stack.as_mut_slice().get_mut(..) {
-            (*below, *above) = ((*below).max(*above), (*below).min(*above));
+    let waiting = |lane: usize| Waiting::new(enter[lane], children[lane]);
+    let (a, b) = (waiting(first), waiting(lane(lanes)));
+    let mut near = a.min(b);
+    stack.push(a.max(b));
+    loop {
+        lanes &= lanes.wrapping_sub(1);
+        if lanes == 0 {
+            return near.child();
         }
-        left -= 1;
+        // Not a full order, but nearer ones come to lie above.
+        let other = waiting(lane(lanes));
+        stack.push(other.max(near));
+        stack.order();
+        near = near.min(other);
     }
-    Child(near as u32)
 }
 
-/// The hits with the triangles of a block.
+/// The lowest lane in a mask.
 #[inline(always)]
-fn block_rows<S: Simd>(simd: S, block: &Block, count: usize, axes: [usize; 3]) -> [[f32x8<S>; 3]; 3] {
-    [0, 1, 2].map(|corner| {
-        axes.map(|axis| {
-            let from = (3 * corner + axis) * count;
-            let words = block.get(from..).and_then(|words| words.first_chunk()).unwrap_or(&[0; WIDTH]);
-            row(simd, words)
-        })
-    })
+fn lane(lanes: u32) -> usize {
+    lanes.trailing_zeros() as usize & (WIDTH - 1)
+}
+
+/// What the walks of a ray share.
+pub(super) struct Query<'q, S: Simd> {
+    pub simd: S,
+    pub tree: &'q Tree,
+    pub ray: &'q PreparedRay,
+    pub shear: ShearLanes<S>,
+}
+
+impl<S: Simd> Query<'_, S> {
+    /// The least hit with a block's triangles not before the ray begins, if it comes before `best`.
+    #[inline(always)]
+    pub(super) fn improve(&self, block: &Block, count: usize, best: &mut Hit) {
+        let &Self { simd, tree, ray, ref shear } = self;
+        let corners = [0, 1, 2].map(|corner| {
+            shear.axes.map(|axis| {
+                let words = block.get((3 * corner + axis) * count..).and_then(|words| words.first_chunk());
+                row(simd, words.unwrap_or(&[0; WIDTH]))
+            })
+        });
+        let possible = shear.test(corners);
+        let lanes = possible.lanes & (0xff >> (WIDTH - count));
+        if lanes == 0 {
+            return;
+        }
+        let from = start_of(ray);
+        let crossings = shear.place(simd, &possible, lanes, (from.t, best.t));
+        let mut proven = crossings.proven;
+        if tree.sides == Sides::Front {
+            proven &= crossings.front();
+        }
+        let t = crossings.t.as_array();
+        while proven != 0 {
+            let lane = lane(proven);
+            proven &= proven - 1;
+            let number = block.get((TRIANGLE_WORDS - 1) * count + lane).copied().unwrap_or(0);
+            let hit = Hit { t: t[lane], primitive: number };
+            if hit.precedes(best) && tree.is_seen(number, ray) {
+                *best = hit;
+            }
+        }
+        let mut open = crossings.open;
+        while open != 0 {
+            let lane = lane(open);
+            open &= open - 1;
+            let span = Span::new(from, *best);
+            if let Some(hit) = tree.certify(block, (lane, count), crossings.is_front(lane), ray, &span) {
+                *best = hit;
+            }
+        }
+    }
 }
 
 /// The least hit of `ray`.
 #[inline(always)]
-pub(super) fn closest<S: Simd>(simd: S, tree: &Tree, ray: &PreparedRay) -> Option<Hit> {
-    let slabs = Slabs::new(simd, ray);
-    let shear = ShearLanes::new(simd, ray);
-    let from = start_of(ray);
+pub(super) fn closest<S: Simd>(simd: S, tree: &Tree, ray: &Ray) -> Option<Hit> {
+    let prepared = PreparedRay::here(ray);
+    let ray = prepared.as_ref()?;
+    let slabs = Slabs::new(simd, ray, slabs::Sides::of(ray));
+    let query = Query { simd, tree, ray, shear: ShearLanes::new(simd, ray) };
     let mut best = end_of(ray);
     let mut end = limit(simd, best.t);
     let mut stack = Stack::new();
@@ -93,56 +121,59 @@ pub(super) fn closest<S: Simd>(simd: S, tree: &Tree, ray: &PreparedRay) -> Optio
             }
         } else {
             let Some(block) = tree.block(child) else { break };
-            let count = child.count();
-            let possible = shear.test(simd, block_rows(simd, block, count, shear.axes));
-            let lanes = possible.lanes & (0xff >> (WIDTH - count));
-            if lanes != 0 {
-                let before = best;
-                let crossings = shear.place(simd, &possible);
-                let within = crossings.t.simd_le(best.t) & crossings.t.simd_ge(from.t);
-                let mut proven = crossings.proven & lanes & within.to_bitmask() as u32;
-                if tree.sides == Sides::Front {
-                    proven &= crossings.front();
-                }
-                let t = crossings.t.as_array();
-                while proven != 0 {
-                    let lane = proven.trailing_zeros() as usize & 7;
-                    proven &= proven - 1;
-                    let number = block.get((TRIANGLE_WORDS - 1) * count + lane).copied().unwrap_or(0);
-                    let hit = Hit { t: t[lane], primitive: number };
-                    if hit.precedes(&best) && tree.is_seen(number, ray) {
-                        best = hit;
-                    }
-                }
-                let mut open = lanes & !crossings.proven;
-                while open != 0 {
-                    let lane = open.trailing_zeros() as usize & 7;
-                    open &= open - 1;
-                    let span = Span::new(from, best);
-                    if let Some(hit) = tree.intersect(block, (lane, count), ray, &span)
-                        && tree.is_seen(hit.primitive, ray)
-                    {
-                        best = hit;
-                    }
-                }
-                if best.t < before.t {
-                    end = limit(simd, best.t);
-                }
+            let before = best.t;
+            query.improve(block, child.count(), &mut best);
+            if best.t < before {
+                end = limit(simd, best.t);
             }
         }
-        let behind = beyond(best.t);
-        child = loop {
-            let Some(next) = stack.pop() else { return (best.primitive != u32::MAX).then_some(best) };
-            if !(f32::from_bits((next >> 32) as u32) > behind) {
-                break Child(next as u32);
-            }
-        };
+        let Some(next) = stack.pop(beyond(best.t)) else { break };
+        child = next;
     }
     (best.primitive != u32::MAX).then_some(best)
 }
 
 /// Whether `ray` has a hit.
 #[inline(always)]
-pub(super) fn any<S: Simd>(simd: S, tree: &Tree, ray: &PreparedRay) -> bool {
-    closest(simd, tree, ray).is_some()
+pub(super) fn any<S: Simd>(simd: S, tree: &Tree, ray: &Ray) -> bool {
+    let prepared = PreparedRay::here(ray);
+    let Some(ray) = prepared.as_ref() else { return false };
+    let slabs = Slabs::new(simd, ray, slabs::Sides::of(ray));
+    let query = Query { simd, tree, ray, shear: ShearLanes::new(simd, ray) };
+    let until = end_of(ray);
+    let end = limit(simd, until.t);
+    let mut stack = Stack::new();
+    let Some(mut child) = tree.root else { return false };
+    loop {
+        if !child.is_block() {
+            let Some(node) = tree.nodes.get(child.0 as usize) else { return false };
+            let lanes = slabs.meet(simd, node, end).lanes;
+            if lanes != 0 {
+                child = descend_anyhow(node, lanes, &mut stack);
+                continue;
+            }
+        } else {
+            let Some(block) = tree.block(child) else { return false };
+            let mut best = until;
+            query.improve(block, child.count(), &mut best);
+            if best.primitive != until.primitive {
+                return true;
+            }
+        }
+        let Some(next) = stack.pop(f32::INFINITY) else { return false };
+        child = next;
+    }
+}
+
+/// As [`descend`], in any order.
+#[inline(always)]
+pub(super) fn descend_anyhow(node: &Node, mut lanes: u32, stack: &mut Stack) -> Child {
+    let children = &node.rows[CHILDREN];
+    let first = Child(children[lane(lanes)]);
+    lanes &= lanes.wrapping_sub(1);
+    while lanes != 0 {
+        stack.push(Waiting::new(f32::NEG_INFINITY, children[lane(lanes)]));
+        lanes &= lanes - 1;
+    }
+    first
 }

@@ -4,7 +4,7 @@
 use fearless_simd::{Simd, SimdBase, SimdMask, f32x8, mask32x8};
 
 use super::filter::{SMALL, TOLERANCE, U, UNDERFLOW};
-use crate::geometry::{PreparedRay, ray::LIFT};
+use crate::geometry::{PreparedRay, beyond, ray::LIFT};
 
 /// A ray as the test of eight triangles wants it.
 #[derive(Clone, Copy, Debug)]
@@ -33,11 +33,21 @@ pub(crate) struct Possible<S: Simd> {
 pub(crate) struct Crossings<S: Simd> {
     /// The ray's parameters.
     pub(crate) t: f32x8<S>,
-    /// A bit for each that is hit, with a proven parameter.
+    /// A bit for each that is hit, with a proven parameter within the limits.
     pub(crate) proven: u32,
+    /// A bit for each that may be hit, but within the limits only as far as is known.
+    pub(crate) open: u32,
+    /// A bit for each that is hit, wherever that is.
+    hit: u32,
     /// A bit for each determinant above zero.
     positive: u32,
     backward: bool,
+}
+
+/// The greatest parameter that is not [`beyond`] any less than `t`.
+#[inline(always)]
+fn before(t: f32) -> f32 {
+    -beyond(-t)
 }
 
 impl<S: Simd> ShearLanes<S> {
@@ -57,7 +67,7 @@ impl<S: Simd> ShearLanes<S> {
 
     /// Which of the triangles may be hit; the corners' coordinates stand in the order of `axes`.
     #[inline(always)]
-    pub(crate) fn test(&self, simd: S, [a, b, c]: [[f32x8<S>; 3]; 3]) -> Possible<S> {
+    pub(crate) fn test(&self, [a, b, c]: [[f32x8<S>; 3]; 3]) -> Possible<S> {
         let [ox, oy, oz] = self.origin;
         let [sx, sy] = self.slope;
         let (az, bz, cz) = (a[2] - oz, b[2] - oz, c[2] - oz);
@@ -70,14 +80,19 @@ impl<S: Simd> ShearLanes<S> {
         // A NaN makes the bound one, too.
         let (least, greatest) = (u.min(v).min(w), u.max(v).max(w));
         let missed = greatest.simd_gt(bound) & least.simd_lt(-bound);
-        let _ = simd;
         let lanes = !missed.to_bitmask() as u32 & 0xff;
         Possible { edges: [u, v, w], depths: [az, bz, cz], spread, bound, least, greatest, lanes }
     }
 
-    /// Where the triangles are hit.
+    /// Where the triangles are hit between the limits; `lanes` are those that may be hit.
     #[inline(always)]
-    pub(crate) fn place(&self, simd: S, possible: &Possible<S>) -> Crossings<S> {
+    pub(crate) fn place(
+        &self,
+        simd: S,
+        possible: &Possible<S>,
+        lanes: u32,
+        (t_min, t_max): (f32, f32),
+    ) -> Crossings<S> {
         let &Possible { edges: [u, v, w], depths: [az, bz, cz], spread, bound, least, greatest, .. } = possible;
         let determinant = (u + v) + w;
         let (e1, e2) = (bz - az, cz - az);
@@ -94,9 +109,22 @@ impl<S: Simd> ShearLanes<S> {
         let narrow = (edge * 16.0).simd_lt(area) & area.simd_lt(1.0e30);
         let near = (error * (8.0 * U)).simd_lt(limit) & limit.simd_gt(SMALL);
         let normal = magnitude.simd_gt(SMALL) & size.simd_gt(1.0e-30) & size.simd_lt(1.0e37);
-        let proven = (hit & narrow & near & normal).to_bitmask() as u32;
+        let within = t.simd_ge(t_min) & t.simd_le(t_max);
+        let placed = hit & narrow & near & normal;
+        let mut open = lanes & !placed.to_bitmask() as u32;
+        if open != 0 {
+            let error = ((error * (8.0 * U) + 1.0e-36) / area + magnitude * (8.0 * U) + 1.0e-36) * self.inverse.abs();
+            let error = error + 1.0e-36;
+            let outside = (t + error).simd_lt(t_min) | (t - error).simd_gt(beyond(t_max));
+            // A crossing lies between the corners' parameters along the major axis.
+            let [a, b, c] = possible.depths.map(|depth| depth * self.inverse);
+            let (first, last) = (a.min(b).min(c), a.max(b).max(c));
+            let beside = first.simd_gt(beyond(t_max)) | last.simd_lt(before(t_min));
+            open &= !((hit & narrow & outside) | beside).to_bitmask() as u32;
+        }
         let positive = determinant.simd_gt(f32x8::splat(simd, 0.0)).to_bitmask() as u32;
-        Crossings { t, proven, positive, backward: self.inverse <= 0.0 }
+        let proven = (placed & within).to_bitmask() as u32 & lanes;
+        Crossings { t, proven, open, hit: hit.to_bitmask() as u32, positive, backward: self.inverse <= 0.0 }
     }
 }
 
@@ -105,5 +133,11 @@ impl<S: Simd> Crossings<S> {
     #[inline(always)]
     pub(crate) fn front(&self) -> u32 {
         if self.backward { !self.positive } else { self.positive }
+    }
+
+    /// Whether the triangle of a lane that is certainly hit is hit from its front; none if that is open.
+    #[inline(always)]
+    pub(crate) fn is_front(&self, lane: usize) -> Option<bool> {
+        (self.hit >> lane & 1 != 0).then_some(self.front() >> lane & 1 != 0)
     }
 }

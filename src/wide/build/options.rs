@@ -1,0 +1,58 @@
+/// How a hierarchy is built: a preset, or one with knobs changed.
+///
+/// ```
+/// use hitscan::wide::Options;
+/// let options = Options { reinsertions: 1, ..Options::balanced() };
+/// # let _ = options;
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Options {
+    /// Primitives that are tested at once, and the most in a leaf: 1, 2, 4 or 8.
+    pub block: u32,
+    /// What a step from a node to its children costs, in tests of a block.
+    pub step_cost: f32,
+    /// The most bins per axis at whose borders sets are divided, 2 … 32.
+    pub bins: u32,
+    /// Sets of at most so many are sorted and divided anywhere, 0 … 64.
+    pub sorted: u32,
+    /// How often nodes are taken out and put where they fit best.
+    pub reinsertions: u32,
+    /// The part of all nodes that is taken out each time, those with the largest boxes.
+    pub reinserted: f32,
+    /// The most references per primitive, 1 … 2: above 1, primitives are cut where large boxes would overlap.
+    pub references: f32,
+}
+
+impl Options {
+    /// The least time to build.
+    #[must_use]
+    pub const fn fast() -> Self {
+        Self {
+            block: 4,
+            step_cost: 0.5,
+            bins: 16,
+            sorted: 0,
+            reinsertions: 0,
+            reinserted: 0.0,
+            references: 1.0,
+        }
+    }
+
+    /// A good deal of both: half as fast to build.
+    #[must_use]
+    pub const fn balanced() -> Self {
+        Self { bins: 32, sorted: 32, reinsertions: 2, reinserted: 0.05, ..Self::fast() }
+    }
+
+    /// The least time per ray.
+    #[must_use]
+    pub const fn best() -> Self {
+        Self { reinsertions: 4, references: 1.3, ..Self::balanced() }
+    }
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self::balanced()
+    }
+}
