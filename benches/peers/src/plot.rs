@@ -22,6 +22,9 @@ const COLORS: [RGBColor; 7] = [
     RGBColor(204, 121, 167),
 ];
 
+/// Where the axis of ratios has its marks.
+const RATIOS: [f64; 13] = [0.1, 0.2, 0.3, 0.4, 0.5, 0.7, 1.0, 1.4, 2.0, 3.0, 4.0, 6.0, 8.0];
+
 /// The colour of a series.
 fn color(place: usize) -> RGBAColor {
     COLORS[place % COLORS.len()].mix(if place < COLORS.len() { 1.0 } else { 0.45 })
@@ -59,7 +62,7 @@ fn panel(
         .margin(12)
         .x_label_area_size(30)
         .y_label_area_size(50)
-        .build_cartesian_2d(-0.4..last + 0.4, (least..most).log_scale())?;
+        .build_cartesian_2d(-0.4..last * 1.35 + 0.4, (least..most).log_scale().with_key_points(RATIOS.to_vec()))?;
     let name = |x: &f64| {
         let whole = (x - x.round()).abs() < 1.0e-6 && *x > -0.5;
         outcomes.get(x.round() as usize).filter(|_| whole).map_or_else(String::new, |outcome| outcome.name.clone())
@@ -69,7 +72,7 @@ fn panel(
         .disable_x_mesh()
         .x_labels(outcomes.len() * 2)
         .x_label_formatter(&name)
-        .y_label_formatter(&|ratio| format!("{ratio:.2}"))
+        .y_label_formatter(&|ratio| format!("{ratio:.1}"))
         .draw()?;
     for (number, name) in names(outcomes).enumerate() {
         let (points, color) = (points(name), color(number));
@@ -83,7 +86,7 @@ fn panel(
     }
     chart
         .configure_series_labels()
-        .position(SeriesLabelPosition::LowerLeft)
+        .position(SeriesLabelPosition::MiddleRight)
         .background_style(WHITE.mix(0.8))
         .border_style(BLACK)
         .label_font(("sans-serif", 11))
