@@ -57,12 +57,13 @@ fn panel(
     };
     let all = || names(outcomes).flat_map(points).map(|point| point.1);
     let (least, most) = (all().fold(0.5, f64::min) / 1.2, all().fold(1.0, f64::max) * 1.2);
+    let marks = RATIOS.into_iter().filter(|mark| (least..most).contains(mark)).collect();
     let mut chart = ChartBuilder::on(area)
         .caption(format!("{kind} rays, ratio to {to}"), ("sans-serif", 20))
         .margin(12)
         .x_label_area_size(30)
         .y_label_area_size(50)
-        .build_cartesian_2d(-0.4..last * 1.35 + 0.4, (least..most).log_scale().with_key_points(RATIOS.to_vec()))?;
+        .build_cartesian_2d(-0.4..last * 1.35 + 0.4, (least..most).log_scale().with_key_points(marks))?;
     let name = |x: &f64| {
         let whole = (x - x.round()).abs() < 1.0e-6 && *x > -0.5;
         outcomes.get(x.round() as usize).filter(|_| whole).map_or_else(String::new, |outcome| outcome.name.clone())
@@ -70,6 +71,7 @@ fn panel(
     chart
         .configure_mesh()
         .disable_x_mesh()
+        .max_light_lines(0)
         .x_labels(outcomes.len() * 2)
         .x_label_formatter(&name)
         .y_label_formatter(&|ratio| format!("{ratio:.1}"))
