@@ -54,7 +54,7 @@ struct Tie {
 }
 
 impl<'a> GridTraversal<'a> {
-    /// The walk along `ray`, before its beginning.
+    /// A walk before its beginning, along whichever ray is given to it.
     #[inline(always)]
     pub(super) fn new(grid: &Grid<'a>) -> Self {
         // The first cells are found where this is when it is walked: it need not be moved then.

@@ -42,10 +42,13 @@ pub(super) struct Bins {
 }
 
 impl Bins {
+    /// Of nothing.
+    pub(super) const EMPTY: Self = Self { hulls: [[Hull::EMPTY; MOST]; 3], counts: [[0; MOST]; 3] };
+
     /// Of `items`, in the bins of `grid`.
     #[inline]
     pub(super) fn of(items: &[Item], grid: &Grid) -> Self {
-        let mut bins = Self { hulls: [[Hull::EMPTY; MOST]; 3], counts: [[0; MOST]; 3] };
+        let mut bins = Self::EMPTY;
         for item in items {
             let places: [u32; 4] = bytemuck::must_cast(grid.rounded(item));
             for axis in 0..3 {
@@ -69,6 +72,11 @@ impl Bins {
             }
         }
         self
+    }
+
+    /// How many items are before a border.
+    pub(super) fn before(&self, cut: &Cut) -> u32 {
+        self.counts[cut.axis].iter().take((cut.border - ROUND) as usize).sum()
     }
 
     /// The boxes before and behind a border.
@@ -103,7 +111,7 @@ impl Bins {
                 let cost = rules.cost(hull, count) + other;
                 if cost < least && rules.allow(count, right) {
                     least = cost;
-                    best = Some(Cut { grid: *grid, axis, border: ROUND + border as f32, cost });
+                    best = Some(Cut { grid: *grid, axis, left: count, border: ROUND + border as f32, cost });
                 }
             }
         }
@@ -116,18 +124,18 @@ impl Bins {
 pub(super) struct Rules {
     /// What makes the set's longest edge a length of 1.
     pub(super) scale: f32,
-    /// Binary logarithm of the primitives that are tested at once.
-    pub(super) block: u32,
+    /// Binary logarithm of the items that are tested at once.
+    pub(super) leaf: u32,
     /// The most items that a part may have, so that it can be divided further within the depth.
     pub(super) most: u32,
 }
 
 impl Rules {
-    /// Of a leaf with so many items in `hull`: one test for each block.
+    /// Of a leaf with so many items in `hull`: one test for each full leaf.
     #[inline(always)]
     pub(super) fn cost(&self, hull: Hull, count: u32) -> f32 {
-        let blocks = (count + (1 << self.block) - 1) >> self.block;
-        hull.weight(self.scale) * blocks as f32
+        let tests = (count + (1 << self.leaf) - 1) >> self.leaf;
+        hull.weight(self.scale) * tests as f32
     }
 
     /// The same, had each item its own test.
@@ -148,6 +156,8 @@ impl Rules {
 pub(super) struct Cut {
     grid: Grid,
     axis: usize,
+    /// Items before it.
+    pub(super) left: u32,
     /// The first bin behind it, plus [`ROUND`].
     border: f32,
     /// What both parts cost.
