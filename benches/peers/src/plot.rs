@@ -9,7 +9,7 @@ use crate::{
 };
 
 /// Pixels of each of the four panels.
-const PANEL: (u32, u32) = (720, 480);
+const PANEL: (u32, u32) = (960, 480);
 
 /// Colours that differ for the eyes of all (Okabe and Ito 2008); when they run out, they come again paler.
 const COLORS: [RGBColor; 7] = [
