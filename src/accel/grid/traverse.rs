@@ -5,7 +5,7 @@ use super::{
     met::Met,
 };
 use crate::{
-    accel::{Step, Traversal, leaf::References},
+    accel::{Step, Traversal, leaf::References, segment::Segment},
     geometry::{Aabb, Axis, AxisView, Lattice, PreparedRay, beyond, slack},
     math::{greatest, least},
 };
@@ -87,13 +87,8 @@ impl<'a> GridTraversal<'a> {
     #[inline(never)]
     fn begin(&mut self, ray: &PreparedRay) {
         self.begins = false;
-        let Some((enter, exit)) = self.bounds.interval(ray) else { return };
-        let enter = greatest(enter, ray.ray().t_min);
-        let exit = least(exit, beyond(ray.ray().t_max));
-        if enter > exit {
-            return;
-        }
-        let slack = slack(enter);
+        let slack = slack(ray.ray().t_min);
+        let Some(Segment { enter, exit, .. }) = Segment::within(&self.bounds, 0, ray, slack) else { return };
         (self.enter, self.exit, self.slack, self.is_new) = (enter, exit, slack, true);
         // Twice the widening of exits.
         self.margin = greatest(enter.abs(), exit.abs()) * (1.0 / 32768.0) + 2.0 * slack;

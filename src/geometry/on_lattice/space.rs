@@ -157,6 +157,9 @@ impl LatticeSpace {
     }
 }
 
+/// The two axes behind each, in cyclic order; looked up, so that there is one way for all and not three.
+const MINOR: [[Axis; 2]; 3] = [[Axis::Y, Axis::Z], [Axis::Z, Axis::X], [Axis::X, Axis::Y]];
+
 /// The line from `start` along `speed`, whatever that is counted in.
 #[inline(always)]
 fn line(start: &Planes, speed: [i32; 3]) -> Option<Line> {
@@ -179,7 +182,8 @@ fn line(start: &Planes, speed: [i32; 3]) -> Option<Line> {
         let middle = shifted(middle, unit + LatticeRay::FRACTION);
         (middle.saturating_add(MIDDLE << LatticeRay::FRACTION), (slope + (1 << 15)) >> 16)
     };
-    let crossings = [cross(major.next()), cross(major.next().next())];
+    let [first, second] = MINOR[major as usize];
+    let crossings = [cross(first), cross(second)];
     Some(Line { major, descends, crossings })
 }
 
