@@ -30,7 +30,7 @@ pub struct Subject<'a> {
 
 #[derive(Clone, Copy)]
 enum Body<'a> {
-    Mesh { view: View<'a>, built: &'a Built },
+    Mesh { view: &'a View<'a>, built: &'a Built },
     World { placed: &'a [Instance], boxes: &'a [Aabb], own: u64, bytes: usize, seconds: f64 },
 }
 
@@ -55,7 +55,7 @@ impl Source {
             Some(triangles) => built.scene(triangles)?,
             None => built.scene(&shaded)?,
         };
-        let body = Body::Mesh { view, built: &built };
+        let body = Body::Mesh { view: &view, built: &built };
         visit(&Subject { scene: &*scene, primitives: view.mesh.len(), body })
     }
 }
