@@ -4,7 +4,7 @@
 
 mod common;
 
-use common::{Random, bits, meshes, plans};
+use common::{Random, bits, meshes, plans, rays, seed};
 use hitscan::{
     CompactKdTree, DualSplit, LatticeMesh, LatticeScene, List, Mesh, Ray, Scene,
     accel::{LatticeAccelerator, Plan},
@@ -18,10 +18,6 @@ use hitscan::{
     primitives::{Order, Renumbering, Reordered, Sides},
     scene::Mismatch,
 };
-
-fn rays() -> usize {
-    std::env::var("HITSCAN_RAYS").ok().and_then(|n| n.parse().ok()).unwrap_or(1_000_000)
-}
 
 /// Vertices on few planes, close together, all over the lattice, or of large and small triangles at once.
 fn numbers(random: &mut Random, count: usize) -> Vec<[u16; 3]> {
@@ -113,10 +109,10 @@ fn compare<A: LatticeAccelerator>(
 #[test]
 fn every_structure_answers_as_the_list() {
     for kind in [3, 4] {
-        let mut random = Random::new(kind as u64);
+        let mut random = Random::new(kind as u64 + 100 * seed());
         let mut memory = vec![0; 1 << 16];
         let mut count = Count::default();
-        while count.cast < rays() / 2 {
+        while count.cast < rays(1_000_000) / 2 {
             let vertices = 3 + random.below(40);
             let numbers = numbers(&mut random, vertices);
             let triangles: Vec<[u16; 3]> =
@@ -181,8 +177,8 @@ fn closed_meshes_do_not_leak() {
     let words = bake::build(&mesh, &Plan::DualSplit(dualsplit::Options::fast())).unwrap();
     let scene = LatticeScene::new(DualSplit::open(&words).unwrap(), &mesh).unwrap();
     let positions: Vec<Vec3> = mesh.positions().collect();
-    let mut random = Random::new(3);
-    for _ in 0..rays() / 2 {
+    let mut random = Random::new(3 + 100 * seed());
+    for _ in 0..rays(1_000_000) / 2 {
         // From inside, most at corners and along edges.
         let origin = Vec3::from_array([0; 3].map(|_| random.unit() - 0.5)) * 0.8;
         let corners = mesh.indices().get(random.below(triangles.len()) as u32).unwrap();

@@ -14,6 +14,7 @@ mod difference;
 mod failure;
 mod hits;
 mod input;
+mod interrupt;
 mod model;
 mod output;
 mod picture;
@@ -57,6 +58,7 @@ struct Cli {
 /// The program.
 #[must_use]
 pub fn main() -> ExitCode {
+    interrupt::listen();
     match Cli::try_parse() {
         Ok(cli) => cli.command.run().unwrap_or_else(|failure| failure.report()),
         Err(error) => refuse(&error),

@@ -11,12 +11,14 @@ mod indices;
 mod lattice_mesh;
 mod lattice_triangles;
 mod mesh;
+mod normals;
 mod pair;
 mod proximity;
 mod reordered;
 mod smooth;
 mod spheres;
 mod surface;
+mod triangles;
 
 pub use counted::Counted;
 pub use from_fn::{FromFn, from_fn};
@@ -25,12 +27,14 @@ pub use indices::Indices;
 pub use lattice_mesh::LatticeMesh;
 pub use lattice_triangles::LatticeTriangles;
 pub use mesh::{Mesh, MeshError, Sides};
+pub use normals::Normals;
 pub use proximity::{Nearest, Probe, Proximity};
 pub use reordered::{Order, OrderError, Renumbering, Reordered};
 pub use smooth::Smooth;
 pub use spheres::{SphereError, Spheres};
 pub use surface::Surface;
 pub(crate) use surface::unit;
+pub use triangles::Triangles;
 
 use crate::geometry::{Aabb, PreparedRay, Ray};
 

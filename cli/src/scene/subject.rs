@@ -49,7 +49,10 @@ impl Source {
         let view = self.view(path)?;
         let built = view.build(structure.structure, structure.preset)?;
         let normals = if smooth { normals_by_place(&view.mesh) } else { Vec::new() };
-        let shaded = Smooth::new(view.mesh, &normals);
+        let shaded = match view.normals {
+            Some(normals) if !smooth => Smooth::packed(view.mesh, normals),
+            _ => Smooth::new(view.mesh, &normals),
+        };
         let renumbered = view.renumbered(shaded)?;
         let scene = match &renumbered {
             Some(triangles) => built.scene(triangles)?,
@@ -153,6 +156,10 @@ impl<A: Accelerator, T: Accelerator> Caster for World<'_, A, T> {
 
     fn any_hit(&self, ray: &Ray, _depth: u32) -> bool {
         self.scene.any_hit(ray)
+    }
+
+    fn any_hit_near(&self, ray: &Ray, _depth: u32, last: &mut Option<u32>) -> bool {
+        self.scene.any_hit_near(ray, last)
     }
 
     fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {

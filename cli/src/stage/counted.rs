@@ -5,7 +5,8 @@ use std::{
 
 use hitscan::{
     Hit, Ray,
-    geometry::Aabb,
+    accel::Entries,
+    geometry::{Aabb, Bundle},
     primitives::Surface,
     render::{Caster, Material},
 };
@@ -122,8 +123,21 @@ impl<S: Caster + ?Sized> Caster for Counted<'_, S> {
         self.counted(|counter| &counter.closest, depth, || self.scene.closest_hit(ray, depth))
     }
 
+    /// Looked for once a tile, and no ray: not counted.
+    fn enter(&self, bundle: &Bundle) -> Entries {
+        self.scene.enter(bundle)
+    }
+
+    fn closest_hit_from(&self, entries: &Entries, ray: &Ray) -> Option<Hit> {
+        self.counted(|counter| &counter.closest, 0, || self.scene.closest_hit_from(entries, ray))
+    }
+
     fn any_hit(&self, ray: &Ray, depth: u32) -> bool {
         self.counted(|counter| &counter.any, depth, || self.scene.any_hit(ray, depth))
+    }
+
+    fn any_hit_near(&self, ray: &Ray, depth: u32, last: &mut Option<u32>) -> bool {
+        self.counted(|counter| &counter.any, depth, || self.scene.any_hit_near(ray, depth, last))
     }
 
     fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
@@ -171,10 +185,12 @@ mod tests {
             for depth in 0..3 {
                 (0..100).for_each(|_| assert!(counted.closest_hit(&ray, depth).is_none()));
             }
+            assert!(counted.closest_hit_from(&Entries::everything(Aabb::EMPTY), &ray).is_none());
             assert!(!counted.any_hit(&ray, 99));
+            assert!(!counted.any_hit_near(&ray, 99, &mut None));
         });
         let tally = counted.tally();
-        assert_eq!(tally.closest[..4], [200, 200, 200, 0]);
-        assert_eq!((tally.shadow[DEPTHS - 1], tally.rays()), (2, 602));
+        assert_eq!(tally.closest[..4], [202, 200, 200, 0]);
+        assert_eq!((tally.shadow[DEPTHS - 1], tally.rays()), (4, 606));
     }
 }
