@@ -97,9 +97,7 @@ impl Connection {
         }
         let url = self.url();
         let addresses: Vec<&str> = url.split(',').collect();
-        options.connect(addresses).await.map_err(|error| {
-            let source = std::error::Error::source(&error).map_or(String::new(), |source| format!(" ({source})"));
-            refused(&format!("no connection to {url}"), format!("{error}{source}"))
-        })
+        let connected = options.connect(addresses).await;
+        connected.map_err(|error| refused(&format!("no connection to {url}"), error))
     }
 }
