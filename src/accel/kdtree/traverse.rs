@@ -104,8 +104,6 @@ impl<'a> KdTraversal<'a> {
 impl<'a> Traversal for KdTraversal<'a> {
     type Leaf = Leaf<'a>;
 
-    // Out of line on chips: together with the test of triangles it needs more registers than there are.
-    #[cfg_attr(target_pointer_width = "32", inline(never))]
     fn next_leaf(&mut self, ray: &PreparedRay, t_max: f32) -> Option<Leaf<'a>> {
         match self.advance::<false>(ray, t_max, &mut 0) {
             Step::Leaf(leaf) => Some(leaf),
