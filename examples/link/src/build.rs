@@ -8,7 +8,7 @@ use hitscan::{
     asset::{Asset, Stored},
     from_fn,
     geometry::Bundle,
-    primitives::{Renumbering, Spheres},
+    primitives::{Renumbering, Smooth, Spheres},
     render::Materials,
 };
 
@@ -118,6 +118,7 @@ fn assets() {
         read::<Mesh<'_>>(&asset);
         read::<LatticeMesh<'_>>(&asset);
         read::<Spheres<'_>>(&asset);
+        read::<Smooth<'_>>(&asset);
         read::<Materials<'_>>(&asset);
         read::<Renumbering<'_>>(&asset);
         read::<&[Instance]>(&asset);

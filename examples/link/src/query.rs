@@ -5,10 +5,11 @@ use core::hint::black_box;
 use hitscan::{
     Accelerator, Arena, Hit, Instance, Instances, LatticeMesh, LatticeScene, List, Mesh, Primitives, Scene,
     accel::{Bounded, Hierarchy, LatticeAccelerator, Structure},
+    asset::Asset,
     error::BuildError,
     geometry::{Bundle, Transform},
     primitives::{
-        Indices, LatticeTriangles, Order, Proximity, Renumbering, Reordered, Sides, Smooth, Spheres, Surface,
+        Indices, LatticeTriangles, Normals, Order, Proximity, Renumbering, Reordered, Sides, Smooth, Spheres, Surface,
     },
 };
 
@@ -29,6 +30,16 @@ pub fn all() {
     let smooth = Smooth::new(mesh, mesh.vertices());
     if let Ok(list) = List::new(&smooth) {
         cast(Scene::new(list, smooth));
+    }
+    black_box((smooth.mesh().len(), Normals::packed(vector())));
+    let mut words = None;
+    let normals = Asset::from_words(some(word, &mut words)).ok().and_then(|asset| asset.read::<Normals<'_>>().ok());
+    if let Some(normals) = normals {
+        black_box((normals.len(), normals.is_empty(), normals.get(word())));
+        let smooth = Smooth::packed(mesh, normals);
+        if let Ok(list) = List::new(&smooth) {
+            cast(Scene::new(list, smooth));
+        }
     }
     with(&Own);
     lattice(mesh.indices());
@@ -126,6 +137,8 @@ fn cast<A: Accelerator, P: Primitives, E>(scene: Result<Scene<A, P>, E>) {
     black_box(scene.closest_hit_where(&ray(), keep));
     black_box(scene.any_hit(&ray()));
     black_box(scene.any_hit_where(&ray(), keep));
+    let mut last = Some(word());
+    black_box((scene.any_hit_near(&ray(), &mut last), last));
     scene.hits(&ray()).for_each(|hit| _ = black_box(hit));
     let mut hits: heapless::Vec<Hit, 4> = heapless::Vec::new();
     scene.nearest_hits(&ray(), &mut hits);

@@ -49,6 +49,7 @@ pub fn all() {
         black_box(renderer.fill_dithered(tile, &mut pixels, Ordered).is_ok());
         black_box((renderer.may_show(&tile, &aabb()), tile.area(), tile.parts(word(), word()).last()));
         black_box(renderer.patch(tile).pixel(word(), word()));
+        black_box(renderer.refined(tile, &pixels, |a, b| a.abs_diff(*b) > 3).last());
     }
     let mut rough = renderer.progressive();
     black_box(rough.step(word(), |tile, color| _ = black_box((tile, color))));
@@ -86,7 +87,7 @@ fn drawn<P: Packed<Color: Channels>, S: Caster>(renderer: &Renderer<'_, S>, dith
     let tile = Tile { x: word(), y: word(), width: word(), height: word() };
     let mut strip = Strip::new(tile, black_box(pixels.as_mut_slice()));
     black_box(strip.bounding_box());
-    black_box(strip.draw_iter(black_box(None::<Pixel<P::Shown>>)).is_ok());
+    black_box(strip.draw_iter(black_box(None::<Pixel<P::Color>>)).is_ok());
     let at = Point::new(word() as i32, word() as i32);
     black_box(display::draw(renderer, &mut strip, at, (word(), word()), dither).is_ok());
 }
