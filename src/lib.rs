@@ -192,6 +192,8 @@ pub mod bake;
 pub mod display;
 #[cfg(feature = "std")]
 pub mod parallel;
+#[cfg(feature = "std")]
+pub mod wide;
 
 #[cfg_attr(not(test), deny(clippy::indexing_slicing))]
 pub mod error;

@@ -7,7 +7,7 @@
 //! | 2 | `accel` |
 //! | 3 | `scene`, `lattice_scene`, `query`, `instances` |
 //! | 4 | `render`, `sensor` |
-//! | 5 | outlets, none of which imports another: `display`, `bake`, `parallel` |
+//! | 5 | outlets, none of which imports another: `display`, `bake`, `parallel`, `wide` |
 //!
 //! `error` stands beside them: every floor may import it. It gathers the error types of all floors but the outlets.
 #![allow(missing_docs)]
@@ -23,7 +23,7 @@ const FLOORS: [&[&str]; 6] = [
     &["accel"],
     &["scene", "lattice_scene", "query", "instances"],
     &["render", "sensor"],
-    &["display", "bake", "parallel"],
+    &["display", "bake", "parallel", "wide"],
 ];
 
 const OUTLETS: usize = 5;

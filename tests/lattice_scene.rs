@@ -8,6 +8,7 @@ use common::{Random, bits, meshes, plans, rays, seed};
 use hitscan::{
     CompactKdTree, DualSplit, LatticeMesh, LatticeScene, List, Mesh, Ray, Scene,
     accel::{LatticeAccelerator, Plan},
+    asset::{Asset, AssetError, Kind},
     bake::{self, OnLattice},
     dualsplit,
     geometry::{Aabb, LatticeSpace},
@@ -15,6 +16,7 @@ use hitscan::{
     kdtree,
     lattice_scene::LatticeError,
     primitives::{Order, Renumbering, Reordered, Sides},
+    scene::Mismatch,
 };
 
 /// Vertices on few planes, close together, all over the lattice, or of large and small triangles at once.
@@ -282,8 +284,6 @@ fn ties_are_decided_by_the_owners_numbers() {
 fn what_is_not_on_one_lattice_is_refused() {
     let frame = Aabb::new(Vec3::ZERO, Vec3::ONE);
     let numbers = [[0, 0, 0], [60_000, 0, 30_000], [0, 60_000, 30_000], [5, 5, 65_535_u16]];
-    let mesh = |frame: &Aabb, triangle: [u16; 3]| LatticeMesh::new(frame, &numbers, &[triangle]).map(|_| ()).unwrap();
-    mesh(&frame, [0, 1, 2]);
     let error = |frame: &Aabb, triangles: &[[u16; 3]], over: &Aabb| {
         let mesh = LatticeMesh::new(frame, &numbers, triangles).unwrap();
         let other = LatticeMesh::new(over, &numbers, triangles).unwrap();
@@ -298,8 +298,32 @@ fn what_is_not_on_one_lattice_is_refused() {
     assert_eq!(error(&uneven, &[[0, 1, 3]], &uneven), Some(LatticeError::Frame));
     let far = Aabb::new(Vec3::splat(1000.0), Vec3::splat(1001.0));
     assert_eq!(error(&far, &[[0, 1, 2]], &far), Some(LatticeError::TooFine));
+    let (one, two) = ([[0_u16, 1, 2]], [[0_u16, 1, 2]; 2]);
+    let (one, two) =
+        (LatticeMesh::new(&frame, &numbers, &one).unwrap(), LatticeMesh::new(&frame, &numbers, &two).unwrap());
+    let mismatch = LatticeError::Mismatch(Mismatch { structure: 1, primitives: 2 });
+    assert_eq!(LatticeScene::new(List::new(&one).unwrap(), two).map(|_| ()), Err(mismatch));
     let flat = Aabb::new(Vec3::ZERO, Vec3::new(1.0, 0.0, 1.0));
     assert!(LatticeSpace::over(&flat).is_none() && LatticeSpace::over(&Aabb::EMPTY).is_none());
+}
+
+#[test]
+fn assets_give_the_scene_that_was_baked() {
+    let vertices = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
+    let mesh = Mesh::new(&vertices, &[[0_u16, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]]).unwrap();
+    let on_lattice = bake::lattice(&mesh);
+    let mesh = on_lattice.mesh(mesh.indices()).unwrap();
+    let words = bake::build(&mesh, &Plan::CompactKdTree(kdtree::Options::small())).unwrap();
+    let tree = CompactKdTree::open(&words).unwrap();
+    let baked = bake::Baker::new().lattice_mesh(&mesh).structure(tree).finish();
+    let asset = Asset::open(bytemuck::cast_slice(&baked)).unwrap();
+    let scene = asset.lattice_scene::<CompactKdTree<'_>, LatticeMesh<'_>>().unwrap();
+    let direct = LatticeScene::new(tree, mesh).unwrap();
+    let ray = Ray::new(Vec3::ONE, Vec3::NEG_ONE);
+    assert!(direct.closest_hit(&ray).is_some());
+    assert_eq!(bits(scene.closest_hit(&ray)), bits(direct.closest_hit(&ray)));
+    let other = asset.lattice_scene::<DualSplit<'_>, LatticeMesh<'_>>();
+    assert_eq!(other.map(|_| ()), Err(AssetError::Missing { kind: Kind::DualSplit }.into()));
 }
 
 #[test]

@@ -57,9 +57,13 @@ fn leaks(random: &mut Random, count: &mut Count, memory: &mut [Vec<u32>]) {
         .filter_map(|(kind, memory)| Some(plans::build(random, kind, &triangles, memory)?.1))
         .collect();
     let scenes: Vec<_> = structures.iter().map(|&structure| Scene::new(structure, &triangles).unwrap()).collect();
+    #[cfg(feature = "std")]
+    let wide = hitscan::wide::WideBvh::new(&triangles, &hitscan::wide::Options::default()).unwrap();
     let mut must_hit = |ray: Ray| {
         let hit = list.closest_hit(&ray);
         assert!(hit.is_some() && list.any_hit(&ray), "a leak: {ray:?} {:?} {:?}", mesh.vertices, mesh.triangles);
+        #[cfg(feature = "std")]
+        assert!(bits(wide.closest_hit(&ray)) == bits(hit) && wide.any_hit(&ray), "{ray:?} {:?}", mesh.vertices);
         for scene in &scenes {
             let found = bits(scene.closest_hit(&ray)) == bits(hit) && scene.any_hit(&ray);
             assert!(found, "{ray:?} {:?} {:?}", scene.accelerator().kind(), mesh.vertices);

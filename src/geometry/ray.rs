@@ -199,6 +199,12 @@ pub(crate) struct Shear {
 
 impl PreparedRay {
     fn new(ray: &Ray) -> Option<Self> {
+        Self::here(ray)
+    }
+
+    /// As [`Ray::prepare`], in the middle of the code that wants it: what is not asked for is not computed.
+    #[inline(always)]
+    pub(crate) fn here(ray: &Ray) -> Option<Self> {
         let (o, d) = (ray.origin, ray.direction);
         let [x, y, z] = d.to_array().map(magnitude);
         let (major, largest) = match (y > x, z > if y > x { y } else { x }) {

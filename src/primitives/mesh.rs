@@ -128,6 +128,12 @@ impl<'a> Mesh<'a> {
         self.faces.indices
     }
 
+    /// The sides from which the triangles can be hit.
+    #[must_use]
+    pub const fn sides(&self) -> Sides {
+        self.faces.sides
+    }
+
     /// The triangle of this number; one without area if there is none.
     #[inline(always)]
     #[must_use]

@@ -17,6 +17,7 @@ mod reordered;
 mod smooth;
 mod spheres;
 mod surface;
+mod triangles;
 
 pub use counted::Counted;
 pub use from_fn::{FromFn, from_fn};
@@ -31,6 +32,7 @@ pub use smooth::Smooth;
 pub use spheres::{SphereError, Spheres};
 pub use surface::Surface;
 pub(crate) use surface::unit;
+pub use triangles::Triangles;
 
 use crate::geometry::{Aabb, PreparedRay, Ray};
 

@@ -68,7 +68,7 @@ fn ball(random: &mut Random) -> Shape {
 
 /// A box, perhaps a flat or a long one.
 fn cuboid(random: &mut Random) -> Shape {
-    let mut half = || f64::from(random.pick(&[1.0, 1.0, 0.1, 1.0e-3]));
+    let mut half = || random.pick(&[1.0_f64, 1.0, 0.1, 1.0e-3]);
     let half = DVec3::new(half(), half(), half());
     let vertex = |i: u32| half * DVec3::from_array([0, 1, 2].map(|k| f64::from(i >> k & 1) * 2.0 - 1.0));
     let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];

@@ -11,6 +11,7 @@ mod preset;
 mod queries;
 mod shape;
 mod source;
+mod subject;
 
 pub use anatomy::Anatomy;
 pub(crate) use built::unwrapped;

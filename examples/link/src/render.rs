@@ -10,7 +10,7 @@ use embedded_graphics_core::{
 };
 use hitscan::{
     List, Scene,
-    display::{self, Stored, Strip},
+    display::{self, Packed, Strip},
     primitives::Spheres,
     render::{
         Camera, Caster, Channels, Diffusion, Dither, Light, Material, Materials, Nearest, Numbers, Ordered, Renderer,
@@ -81,7 +81,7 @@ fn dithered<S: Caster>(renderer: &Renderer<'_, S>, mut dither: impl Dither) {
     drawn::<BinaryColor, _>(renderer, &mut dither, BinaryColor::Off);
 }
 
-fn drawn<P: Stored<Shown: Channels>, S: Caster>(renderer: &Renderer<'_, S>, dither: impl Dither, pixel: P) {
+fn drawn<P: Packed<Color: Channels>, S: Caster>(renderer: &Renderer<'_, S>, dither: impl Dither, pixel: P) {
     let mut pixels = [pixel; 64];
     let tile = Tile { x: word(), y: word(), width: word(), height: word() };
     let mut strip = Strip::new(tile, black_box(pixels.as_mut_slice()));

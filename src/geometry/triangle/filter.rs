@@ -10,16 +10,16 @@ use crate::{
 };
 
 /// Half an ulp of 1.
-const U: f32 = 1.0 / 16_777_216.0;
+pub(super) const U: f32 = 1.0 / 16_777_216.0;
 
 /// 2^-125: covers what underflow can take from an edge function.
-const UNDERFLOW: f32 = 2.0 * f32::MIN_POSITIVE;
+pub(super) const UNDERFLOW: f32 = 2.0 * f32::MIN_POSITIVE;
 
 /// The relative error within which `t` is certified, 2^-17.
-const TOLERANCE: f32 = 1.0 / 131_072.0;
+pub(super) const TOLERANCE: f32 = 1.0 / 131_072.0;
 
 /// 2^-100: smaller magnitudes are left to the tiers with a wider range.
-const SMALL: f32 = 7.888_609e-31;
+pub(super) const SMALL: f32 = 7.888_609e-31;
 
 /// Beyond these determinants cubes of lengths may leave the range of `f32`: 2^-20 and 2^60.
 const SMALL_AREA: f32 = 1.0 / 1_048_576.0;
@@ -39,7 +39,6 @@ pub(super) enum Verdict {
 }
 
 /// A hit, and what was found out on the way.
-#[derive(Clone, Copy)]
 pub(super) struct Certain {
     /// The edge functions.
     edges: [f32; 3],
@@ -47,8 +46,6 @@ pub(super) struct Certain {
     depths: [f32; 3],
     /// The sum of the sheared coordinates' magnitudes.
     spread: f32,
-    /// By what lengths were multiplied, a power of two; 1 at first.
-    scale: f32,
 }
 
 /// A corner where it lies, asked by axis.
@@ -80,7 +77,7 @@ pub(super) struct Sheared {
 }
 
 /// [`Sheared`] with the axes in this order; none if `leave` says so of the corners' first coordinates and depths, before
-/// the others are asked for.
+/// the second are asked for, or of the second.
 #[inline(always)]
 fn in_order(
     [x, y, z]: [Axis; 3],
@@ -96,6 +93,9 @@ fn in_order(
         return None;
     }
     let second = [(a.along(y) - oy) - sy * az, (b.along(y) - oy) - sy * bz, (c.along(y) - oy) - sy * cz];
+    if leave(second, depths) {
+        return None;
+    }
     Some(Sheared { x: first, y: second, z: depths })
 }
 
@@ -113,8 +113,9 @@ pub(super) fn shear(
     }
 }
 
-/// Whether the first coordinates are looked at before the second are computed: they tell more than a third of the triangles
-/// that are missed. On hosts, which cannot predict this, a query takes 4 % longer by it.
+/// Whether the coordinates along one axis are looked at before anything else is computed: the first ones tell more than a
+/// third of the triangles that are missed, the second ones as many of the rest. On hosts, which cannot predict this, a query
+/// takes 4 % longer by it.
 const ONE_BY_ONE: bool = cfg!(any(test, target_pointer_width = "32"));
 
 /// Whether the ray, at 0, passes all corners on the same side, which no other coordinate can make up for.
@@ -156,50 +157,48 @@ pub(super) fn test(corners: [impl Corner; 3], ray: &PreparedRay) -> Verdict {
     } else {
         (u < -bound) & (v < -bound) & (w < -bound)
     };
-    if hit { Verdict::Hit(Certain { edges: [u, v, w], depths: s.z, spread, scale: 1.0 }) } else { Verdict::Unproven }
+    if hit { Verdict::Hit(Certain { edges: [u, v, w], depths: s.z, spread }) } else { Verdict::Unproven }
 }
 
 impl Certain {
     /// The crossing; none if it is proven to lie outside the limits, NaN for a parameter that `f32` cannot prove.
     ///
-    /// Cubes of lengths leave the range of `f32` long before lengths do. What is unproven therefore has a second chance with
-    /// all lengths multiplied by a power of two: so a scene of any scale is answered with the same bits.
-    ///
     /// Out of line: most triangles are missed, and the loop that tests them needs all registers.
     #[inline(never)]
     pub(super) fn place(&self, ray: &PreparedRay, limits: (f32, f32)) -> Option<Crossing> {
-        let (mut certain, mut inverse) = (*self, ray.shear.inverse);
-        loop {
-            let (crossing, area) = certain.place_as_it_is(inverse, limits);
-            let scale = if area < SMALL_AREA {
-                SCALE
-            } else if area > LARGE_AREA {
-                1.0 / SCALE
-            } else {
-                return crossing;
-            };
-            if certain.scale != 1.0 || !crossing.is_some_and(|crossing| crossing.t.is_nan()) {
-                return crossing;
-            }
-            (certain, inverse) = (self.scaled(scale), inverse / scale);
+        let inverse = ray.shear.inverse;
+        match self.place_scaled(inverse, 1.0, limits) {
+            Some(crossing) if crossing.t.is_nan() => self.place_again(inverse, crossing, limits),
+            crossing => crossing,
         }
     }
 
-    /// The same for lengths that are `scale` times as long, a power of two.
-    #[inline(always)]
-    fn scaled(&self, scale: f32) -> Self {
-        Self {
+    /// A second chance for what is unproven, with all lengths multiplied by a power of two: cubes of lengths leave the range of
+    /// `f32` long before lengths do, and a scene of any scale shall be answered with the same bits.
+    #[cold]
+    #[inline(never)]
+    fn place_again(&self, inverse: f32, unproven: Crossing, limits: (f32, f32)) -> Option<Crossing> {
+        let [u, v, w] = self.edges;
+        let area = ((u + v) + w).abs();
+        let scale = if area < SMALL_AREA {
+            SCALE
+        } else if area > LARGE_AREA {
+            1.0 / SCALE
+        } else {
+            return Some(unproven);
+        };
+        let longer = Self {
             edges: self.edges.map(|edge| edge * scale * scale),
             depths: self.depths.map(|depth| depth * scale),
             spread: self.spread * scale,
-            scale,
-        }
+        };
+        longer.place_scaled(inverse / scale, scale, limits)
     }
 
-    /// The crossing, and the determinant's magnitude.
+    /// The crossing, where all lengths are `scale` times as long as they were.
     #[inline(always)]
-    fn place_as_it_is(&self, inverse: f32, (t_min, t_max): (f32, f32)) -> (Option<Crossing>, f32) {
-        let &Self { edges: [u, v, w], depths: [az, bz, cz], spread, scale } = self;
+    fn place_scaled(&self, inverse: f32, scale: f32, (t_min, t_max): (f32, f32)) -> Option<Crossing> {
+        let &Self { edges: [u, v, w], depths: [az, bz, cz], spread } = self;
         // The determinant has the sign of -(d . N) * d_major.
         let determinant = (u + v) + w;
         let front = (determinant > 0.0) == (inverse > 0.0);
@@ -217,14 +216,14 @@ impl Certain {
         let error = if scale > 1.0 { error + extent * (UNDERFLOW * scale * scale / U) } else { error };
         let unproven = Crossing { t: f32::NAN, front };
         if !(edge * 16.0 < area && area < 1.0e30) {
-            return (Some(unproven), area);
+            return Some(unproven);
         }
         let limit = TOLERANCE * q.abs() * area;
         if error * (8.0 * U) < limit && limit > SMALL && q.abs() > SMALL && t.abs() > 1.0e-30 && t.abs() < 1.0e37 {
-            return (Some(Crossing { t, front }), area);
+            return Some(Crossing { t, front });
         }
         // Proven to lie outside: the slack belongs before any rounding that made `t` (rule R7).
         let error = ((error * (8.0 * U) + 1.0e-36) / area + q.abs() * (8.0 * U) + 1.0e-36) * inverse.abs() + 1.0e-36;
-        (if t + error < t_min || t - error > beyond(t_max) { None } else { Some(unproven) }, area)
+        if t + error < t_min || t - error > beyond(t_max) { None } else { Some(unproven) }
     }
 }

@@ -8,11 +8,15 @@ mod closest;
 mod double;
 mod exact;
 mod filter;
+#[cfg(feature = "std")]
+mod lanes;
 mod shortcut;
 
 use glam::Vec3;
 
 use self::filter::{Corner, Verdict};
+#[cfg(feature = "std")]
+pub(crate) use self::lanes::ShearLanes;
 use super::{Aabb, Axis, PreparedRay, moved, ray::beyond};
 use crate::math::{self, greatest, least};
 
@@ -129,9 +133,12 @@ impl Triangle {
     /// The slow tiers for all kinds of corners.
     #[inline(never)]
     fn certify(&self, ray: &PreparedRay, limits: (f32, f32), front: Option<bool>) -> Option<Crossing> {
-        if is_outside(self, ray, limits) {
-            return None;
-        }
+        if is_outside(self, ray, limits) { None } else { self.decide(ray, front) }
+    }
+
+    /// The last tiers; `front` is known if the filter has proven the hit.
+    #[inline(always)]
+    pub(crate) fn decide(&self, ray: &PreparedRay, front: Option<bool>) -> Option<Crossing> {
         // Doubles are in hardware on hosts; on chips pairs of floats are several times faster than soft doubles.
         if cfg!(any(target_pointer_width = "64", target_arch = "x86", target_arch = "wasm32")) {
             shortcut::test(self, ray, front)

@@ -1,0 +1,141 @@
+//! From the top down: a set is divided where the surface area heuristic expects the least work.
+
+use std::{mem, vec::Vec};
+
+use rayon::prelude::*;
+
+use super::{
+    Options,
+    bins::{Bins, Grid, Rules},
+    division::Division,
+    hull::Hull,
+    node::Node,
+    partition::CHUNK,
+    progress::Monitor,
+    spatial::{Cells, Plane, Spread},
+    sweep::{self, Sorted},
+    task::{SHARED, Task},
+};
+use crate::primitives::Primitives;
+
+/// Sets of fewer items are left to one thread.
+const ALONE: usize = 4096;
+
+/// Parts whose boxes have less than this in common, of the weight of everything, are not worth a look at cuts.
+const OVERLAP: f32 = 3.0e-4;
+
+/// What all tasks share.
+pub(super) struct Grower<'g, P: ?Sized> {
+    pub(super) primitives: &'g P,
+    pub(super) options: &'g Options,
+    /// Binary logarithm of the most items in a leaf.
+    pub(super) leaf: u32,
+    /// The box of everything.
+    pub(super) whole: Hull,
+    pub(super) monitor: &'g Monitor<'g>,
+}
+
+impl<P: Primitives + Sync + ?Sized> Grower<'_, P> {
+    /// Builds the hierarchy of a set; its root.
+    pub(super) fn grow(&self, task: Task<'_>) -> Node {
+        let size = task.items.len();
+        if size <= ALONE {
+            let node = self.grow_alone(task);
+            self.monitor.advance(size as u32);
+            return node;
+        }
+        if self.monitor.is_stopped() {
+            return Node::leaf(task.extent.hull, task.first, 0);
+        }
+        self.inner(task, |[left, right]| rayon::join(|| self.grow(left), || self.grow(right)))
+    }
+
+    /// As [`grow`](Self::grow), on one thread.
+    fn grow_alone(&self, task: Task<'_>) -> Node {
+        self.inner(task, |[left, right]| (self.grow_alone(left), self.grow_alone(right)))
+    }
+
+    /// A node, its children made by `both`; or a leaf.
+    fn inner(&self, mut task: Task<'_>, both: impl FnOnce([Task<'_>; 2]) -> (Node, Node)) -> Node {
+        let (hull, first, base) = (task.extent.hull, task.first, task.base);
+        let Some(parts) = self.divide(&mut task) else {
+            for (reference, item) in task.references.iter_mut().zip(&task.items[..task.count]) {
+                *reference = item.number();
+            }
+            return Node::leaf(hull, first, task.count as u32);
+        };
+        let (place, nodes) = mem::take(&mut task.nodes).split_at_mut(2);
+        task.nodes = nodes;
+        let (left, right) = both(task.split(&parts));
+        place.copy_from_slice(&[left, right]);
+        Node::inner(hull, base)
+    }
+
+    /// Divides a set; none if it is to be a leaf. Not inlined, so that what it needs is not on the stack of all above.
+    #[inline(never)]
+    fn divide(&self, task: &mut Task<'_>) -> Option<super::task::Parts> {
+        Some(self.best(task)?.place(task, self.primitives))
+    }
+
+    /// How to divide a set at the least cost; none if it is to be a leaf.
+    fn best(&self, task: &Task<'_>) -> Option<Division> {
+        let most = 1 << self.leaf;
+        if task.count <= 1 || (task.count <= most && self.options.sorted == 0) {
+            return None;
+        }
+        let must = task.count > most;
+        let scale = task.extent.hull.scale();
+        let below = u32::try_from((most as u64) << (task.levels - 1).min(32)).unwrap_or(u32::MAX);
+        let rules = Rules { scale, leaf: self.leaf, most: below };
+        let whole = task.extent.hull.weight(scale);
+        let pays = |cost: f32| must || cost + whole * self.options.step_cost < whole;
+        let Some((cost, parts, division)) = self.whole_items(task, &rules) else {
+            return must.then_some(Division::Halves);
+        };
+        match self.plane(task, &rules, parts, cost) {
+            Some(plane) if pays(plane.cost) => Some(Division::Plane(plane, rules)),
+            _ => pays(cost).then_some(division),
+        }
+    }
+
+    /// The best way to divide a set without cuts, what both parts cost and their boxes.
+    fn whole_items(&self, task: &Task<'_>, rules: &Rules) -> Option<(f32, [Hull; 2], Division)> {
+        let items = &task.items[..task.count];
+        if items.len() <= (self.options.sorted as usize).min(sweep::MOST) {
+            let sorted = Sorted::best(items, rules)?;
+            return Some((sorted.cost, sorted.hulls, Division::Sorted(sorted)));
+        }
+        let most = self.options.bins as usize;
+        let grid = Grid::new(task.extent.middles, (4 + items.len() / 16).min(most));
+        if items.len() <= SHARED {
+            let bins = Bins::of(items, &grid);
+            let cut = bins.cheapest(&grid, rules)?;
+            return Some((cut.cost, bins.parts(&cut), Division::Cut(cut, Vec::new())));
+        }
+        let chunks: Vec<Bins> = items.par_chunks(CHUNK).map(|chunk| Bins::of(chunk, &grid)).collect();
+        let bins = chunks.iter().fold(Bins::EMPTY, Bins::merge);
+        let cut = bins.cheapest(&grid, rules)?;
+        Some((cut.cost, bins.parts(&cut), Division::Cut(cut, chunks)))
+    }
+
+    /// A plane that divides a set for less than `least`, if there is room to cut and its `parts` would overlap otherwise.
+    fn plane(&self, task: &Task<'_>, rules: &Rules, parts: [Hull; 2], least: f32) -> Option<Plane> {
+        let room = (task.items.len() - task.count) as u32;
+        let common = parts[0].intersection(parts[1]);
+        let scale = self.whole.scale();
+        if room == 0 || common.is_empty() || common.weight(scale) < OVERLAP * self.whole.weight(scale) {
+            return None;
+        }
+        let items = &task.items[..task.count];
+        let cells = Cells::new(task.extent.hull);
+        let is_whole = |number| !self.primitives.is_certified(number);
+        let spread = match items.len() > SHARED {
+            true => {
+                let chunks = items.par_chunks(CHUNK).map(|chunk| Spread::of(chunk, &cells, is_whole));
+                chunks.reduce_with(|spread, other| spread.merge(&other))?
+            }
+            false => Spread::of(items, &cells, is_whole),
+        };
+        spread.cheapest(&cells, rules, least, items.len() as u32, room)
+    }
+}

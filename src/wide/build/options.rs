@@ -1,0 +1,51 @@
+/// How a hierarchy is built: a preset, or one with knobs changed.
+///
+/// ```
+/// use hitscan::wide::Options;
+/// let options = Options { reinsertions: 1, ..Options::balanced() };
+/// # let _ = options;
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Options {
+    /// The most primitives in a leaf of the binary hierarchy, 1, 2, 4 or 8: fewer take longer, and leave the wide one more to
+    /// choose from.
+    pub leaf_size: u32,
+    /// What a step from a node to its children costs, in tests of a leaf.
+    pub step_cost: f32,
+    /// The most bins per axis at whose borders sets are divided, 2 … 32.
+    pub bins: u32,
+    /// Sets of at most so many are sorted and divided anywhere, 0 … 64.
+    pub sorted: u32,
+    /// How often nodes are taken out and put where they fit best.
+    pub reinsertions: u32,
+    /// The part of all nodes that is taken out each time, those with the largest boxes.
+    pub reinserted: f32,
+    /// The most references per primitive, 1 … 2: above 1, primitives are cut where large boxes would overlap.
+    pub references: f32,
+}
+
+impl Options {
+    /// The least time to build.
+    #[must_use]
+    pub const fn fast() -> Self {
+        Self { leaf_size: 4, step_cost: 0.5, bins: 16, sorted: 0, reinsertions: 0, reinserted: 0.0, references: 1.0 }
+    }
+
+    /// A good deal of both: half as fast to build.
+    #[must_use]
+    pub const fn balanced() -> Self {
+        Self { leaf_size: 2, step_cost: 0.3, sorted: 8, reinsertions: 4, reinserted: 0.05, ..Self::fast() }
+    }
+
+    /// The least time per ray.
+    #[must_use]
+    pub const fn best() -> Self {
+        Self { bins: 32, references: 1.3, ..Self::balanced() }
+    }
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self::balanced()
+    }
+}

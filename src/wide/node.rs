@@ -1,0 +1,78 @@
+use bytemuck::{Pod, Zeroable};
+
+use crate::geometry::Aabb;
+
+/// How many children a node has room for, and how many triangles a block.
+pub(super) const WIDTH: usize = 8;
+
+/// Words of a triangle in a block: nine coordinates and its number.
+pub(super) const TRIANGLE_WORDS: usize = 10;
+
+/// Eight boxes by their planes, and what is in them: four lines of a cache.
+///
+/// The rows are the least and the greatest coordinates along x, y and z, then the children.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C, align(64))]
+pub(super) struct Node {
+    pub rows: [[u32; WIDTH]; 8],
+}
+
+/// The row of the children.
+pub(super) const CHILDREN: usize = 6;
+
+impl Node {
+    /// A node whose boxes no ray meets. If one is entered all the same, what is there is `child`.
+    pub(super) fn empty(child: Child) -> Self {
+        let (min, max) = ([f32::INFINITY.to_bits(); WIDTH], [f32::NEG_INFINITY.to_bits(); WIDTH]);
+        Self { rows: [min, max, min, max, min, max, [child.0; WIDTH], [0; WIDTH]] }
+    }
+
+    /// Puts a child into its place.
+    pub(super) fn set(&mut self, place: usize, bounds: &Aabb, child: Child) {
+        let (min, max) = (bounds.min, bounds.max);
+        let words = [min.x, max.x, min.y, max.y, min.z, max.z].map(f32::to_bits);
+        for (row, word) in self.rows.iter_mut().zip(words.into_iter().chain([child.0])) {
+            row[place] = word;
+        }
+    }
+}
+
+/// Where a child is, in a word: a node, or a block of triangles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Child(pub u32);
+
+impl Child {
+    const LEAF: u32 = 1 << 31;
+    const COUNT_SHIFT: u32 = 28;
+
+    /// How many triangles blocks can name.
+    pub(super) const MAX_TRIANGLES: u32 = 1 << Self::COUNT_SHIFT;
+
+    /// A node.
+    pub(super) const fn node(index: u32) -> Self {
+        Self(index)
+    }
+
+    /// A block of one to eight triangles.
+    pub(super) const fn block(first: u32, count: u32) -> Self {
+        Self(Self::LEAF | (count - 1) << Self::COUNT_SHIFT | first)
+    }
+
+    /// Whether it is a block.
+    #[inline(always)]
+    pub(super) const fn is_block(self) -> bool {
+        self.0 & Self::LEAF != 0
+    }
+
+    /// The first triangle of a block, counted through all blocks.
+    #[inline(always)]
+    pub(super) const fn first(self) -> usize {
+        (self.0 & (Self::MAX_TRIANGLES - 1)) as usize
+    }
+
+    /// The number of triangles in a block, 1 to 8.
+    #[inline(always)]
+    pub(super) const fn count(self) -> usize {
+        (self.0 >> Self::COUNT_SHIFT & 7) as usize + 1
+    }
+}

@@ -1,0 +1,86 @@
+use fearless_simd::{Simd, SimdBase, SimdMask, f32x8};
+
+use super::node::{Node, WIDTH};
+use crate::geometry::{PreparedRay, beyond, slack};
+
+/// A ray as the test of eight boxes wants it (rules R1, R2 and R4 of ARCHITECTURE.md).
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Slabs<S: Simd> {
+    /// The rows of the planes that the ray meets first; those it meets then are beside them.
+    near: [usize; 3],
+    origin: [f32x8<S>; 3],
+    entry: [f32x8<S>; 3],
+    exit: [f32x8<S>; 3],
+    t_min: f32x8<S>,
+    slack: f32x8<S>,
+}
+
+/// Eight boxes and a ray.
+#[derive(Clone, Copy)]
+pub(super) struct Met<S: Simd> {
+    /// Where the ray enters.
+    pub enter: f32x8<S>,
+    /// A bit for each box that is not missed.
+    pub lanes: u32,
+}
+
+/// A row of a node or a block.
+#[inline(always)]
+pub(super) fn row<S: Simd>(simd: S, words: &[u32; WIDTH]) -> f32x8<S> {
+    f32x8::load_array_ref(simd, bytemuck::must_cast_ref(words))
+}
+
+/// What [`Slabs`] need besides the ray: found out once for each.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sides {
+    near: [usize; 3],
+    slack: f32,
+}
+
+impl Sides {
+    #[inline(always)]
+    pub(super) fn of(ray: &PreparedRay) -> Self {
+        let [x, y, z, _] = &ray.views;
+        let near = |axis: usize, ascends: bool| 2 * axis + usize::from(!ascends);
+        let near = [near(0, x.ascends()), near(1, y.ascends()), near(2, z.ascends())];
+        Self { near, slack: slack(ray.ray().t_min) }
+    }
+}
+
+impl<S: Simd> Slabs<S> {
+    #[inline(always)]
+    pub(super) fn new(simd: S, ray: &PreparedRay, sides: Sides) -> Self {
+        let [x, y, z, _] = &ray.views;
+        let splat = |x: f32| f32x8::splat(simd, x);
+        Self {
+            near: sides.near,
+            origin: [x, y, z].map(|view| splat(view.origin)),
+            entry: [x, y, z].map(|view| splat(view.entry)),
+            exit: [x, y, z].map(|view| splat(view.exit)),
+            t_min: splat(ray.ray().t_min),
+            slack: splat(sides.slack),
+        }
+    }
+
+    /// Which boxes the ray meets, not behind `limit`.
+    #[inline(always)]
+    pub(super) fn meet(&self, simd: S, node: &Node, limit: f32x8<S>) -> Met<S> {
+        let along = |axis: usize| {
+            let near = row(simd, &node.rows[self.near[axis] & 7]);
+            let far = row(simd, &node.rows[(self.near[axis] ^ 1) & 7]);
+            let origin = self.origin[axis];
+            ((near - origin) * self.entry[axis], (far - origin) * self.exit[axis])
+        };
+        let [(x0, x1), (y0, y1), (z0, z1)] = [along(0), along(1), along(2)];
+        // Where lanes are NaN, the second operand stays on x86; elsewhere the box is entered, which is as right.
+        let enter = z0.max(y0.max(x0.max(self.t_min)));
+        let exit = (z1.min(y1.min(x1.min(f32::INFINITY))) + self.slack).min(limit);
+        Met { enter, lanes: !enter.simd_gt(exit).to_bitmask() as u32 & 0xff }
+    }
+}
+
+/// The parameter behind which nothing counts, in all lanes.
+#[inline(always)]
+pub(super) fn limit<S: Simd>(simd: S, t: f32) -> f32x8<S> {
+    f32x8::splat(simd, beyond(t))
+}

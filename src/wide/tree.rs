@@ -1,0 +1,68 @@
+use std::vec::Vec;
+
+use super::node::{Child, Node, TRIANGLE_WORDS, WIDTH};
+use crate::{
+    geometry::{Aabb, PreparedRay, Triangle},
+    primitives::{Hit, Sides, Span},
+};
+
+/// Words that a walk looks at for a block: eight lanes of each row, wherever it begins.
+pub(super) const BLOCK_WORDS: usize = (TRIANGLE_WORDS - 1) * WIDTH + WIDTH;
+
+/// Nodes and blocks of triangles.
+#[derive(Clone, Debug)]
+pub(super) struct Tree {
+    pub nodes: Vec<Node>,
+    /// Per block the rows of its triangles, without gaps; behind the last as much again as a walk may look at.
+    pub blocks: Vec<u32>,
+    /// Where walks begin; none if there is nothing.
+    pub root: Option<Child>,
+    pub bounds: Aabb,
+    pub sides: Sides,
+    /// By number; empty if all rays see all triangles.
+    pub masks: Vec<u32>,
+}
+
+impl Default for Tree {
+    fn default() -> Self {
+        let (nodes, blocks, masks) = (Vec::new(), Vec::new(), Vec::new());
+        Self { nodes, blocks, root: None, bounds: Aabb::EMPTY, sides: Sides::Both, masks }
+    }
+}
+
+/// The rows of a block, from its first word on.
+pub(super) type Block = [u32; BLOCK_WORDS];
+
+impl Tree {
+    /// The block, and what lies behind it.
+    #[inline(always)]
+    pub(super) fn block(&self, child: Child) -> Option<&Block> {
+        self.blocks.get(child.first() * TRIANGLE_WORDS..)?.first_chunk()
+    }
+
+    /// Whether a ray sees the triangle of this number.
+    #[inline(always)]
+    pub(super) fn is_seen(&self, number: u32, ray: &PreparedRay) -> bool {
+        self.masks.is_empty() || self.masks.get(number as usize).is_some_and(|mask| mask & ray.ray().mask != 0)
+    }
+
+    /// The hit with a triangle of a block, by the slow tiers; `front` is known if it is certainly hit.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn certify(
+        &self,
+        block: &Block,
+        (lane, count): (usize, usize),
+        front: Option<bool>,
+        ray: &PreparedRay,
+        span: &Span,
+    ) -> Option<Hit> {
+        let word = |row: usize| block.get(row * count + lane).copied().unwrap_or(0);
+        let corner = |i: usize| [3 * i, 3 * i + 1, 3 * i + 2].map(|row| f32::from_bits(word(row))).into();
+        let triangle = Triangle::new(corner(0), corner(1), corner(2));
+        let crossing = triangle.decide(ray, front)?;
+        let number = word(TRIANGLE_WORDS - 1);
+        let is_hit = (crossing.front || self.sides == Sides::Both) && self.is_seen(number, ray);
+        if is_hit { span.accept(crossing.t, number) } else { None }
+    }
+}

@@ -1,0 +1,179 @@
+//! One ray's way through the tree.
+
+use fearless_simd::{Simd, SimdBase};
+
+use super::{
+    node::{CHILDREN, Child, Node, TRIANGLE_WORDS, WIDTH},
+    slabs::{self, Met, Slabs, limit, row},
+    stack::{Stack, Waiting},
+    tree::{Block, Tree},
+};
+use crate::{
+    geometry::{PreparedRay, Ray, ShearLanes, beyond},
+    primitives::{Hit, Sides, Span},
+    query::{end_of, start_of},
+};
+
+/// A node's children that are met, at least one: the one to go on with; the others wait.
+#[inline(always)]
+pub(super) fn descend<S: Simd>(node: &Node, met: &Met<S>, stack: &mut Stack) -> Child {
+    let children = &node.rows[CHILDREN];
+    let mut lanes = met.lanes;
+    let first = lane(lanes);
+    lanes &= lanes.wrapping_sub(1);
+    if lanes == 0 {
+        return Child(children[first]);
+    }
+    let enter: &[f32; WIDTH] = met.enter.as_array();
+    let waiting = |lane: usize| Waiting::new(enter[lane], children[lane]);
+    let (a, b) = (waiting(first), waiting(lane(lanes)));
+    let mut near = a.min(b);
+    stack.push(a.max(b));
+    loop {
+        lanes &= lanes.wrapping_sub(1);
+        if lanes == 0 {
+            return near.child();
+        }
+        // Not a full order, but nearer ones come to lie above.
+        let other = waiting(lane(lanes));
+        stack.push(other.max(near));
+        stack.order();
+        near = near.min(other);
+    }
+}
+
+/// The lowest lane in a mask.
+#[inline(always)]
+fn lane(lanes: u32) -> usize {
+    lanes.trailing_zeros() as usize & (WIDTH - 1)
+}
+
+/// What the walks of a ray share.
+pub(super) struct Query<'q, S: Simd> {
+    pub simd: S,
+    pub tree: &'q Tree,
+    pub ray: &'q PreparedRay,
+    pub shear: ShearLanes<S>,
+}
+
+impl<S: Simd> Query<'_, S> {
+    /// The least hit with a block's triangles not before the ray begins, if it comes before `best`.
+    #[inline(always)]
+    pub(super) fn improve(&self, block: &Block, count: usize, best: &mut Hit) {
+        let &Self { simd, tree, ray, ref shear } = self;
+        let corners = [0, 1, 2].map(|corner| {
+            shear.axes.map(|axis| {
+                let words = block.get((3 * corner + axis) * count..).and_then(|words| words.first_chunk());
+                row(simd, words.unwrap_or(&[0; WIDTH]))
+            })
+        });
+        let possible = shear.test(corners);
+        let lanes = possible.lanes & (0xff >> (WIDTH - count));
+        if lanes == 0 {
+            return;
+        }
+        let from = start_of(ray);
+        let crossings = shear.place(simd, &possible, lanes, (from.t, best.t));
+        let mut proven = crossings.proven;
+        if tree.sides == Sides::Front {
+            proven &= crossings.front();
+        }
+        let t = crossings.t.as_array();
+        while proven != 0 {
+            let lane = lane(proven);
+            proven &= proven - 1;
+            let number = block.get((TRIANGLE_WORDS - 1) * count + lane).copied().unwrap_or(0);
+            let hit = Hit { t: t[lane], primitive: number };
+            if hit.precedes(best) && tree.is_seen(number, ray) {
+                *best = hit;
+            }
+        }
+        let mut open = crossings.open;
+        while open != 0 {
+            let lane = lane(open);
+            open &= open - 1;
+            let span = Span::new(from, *best);
+            if let Some(hit) = tree.certify(block, (lane, count), crossings.is_front(lane), ray, &span) {
+                *best = hit;
+            }
+        }
+    }
+}
+
+/// The least hit of `ray`.
+#[inline(always)]
+pub(super) fn closest<S: Simd>(simd: S, tree: &Tree, ray: &Ray) -> Option<Hit> {
+    let prepared = PreparedRay::here(ray);
+    let ray = prepared.as_ref()?;
+    let slabs = Slabs::new(simd, ray, slabs::Sides::of(ray));
+    let query = Query { simd, tree, ray, shear: ShearLanes::new(simd, ray) };
+    let mut best = end_of(ray);
+    let mut end = limit(simd, best.t);
+    let mut stack = Stack::new();
+    let mut child = tree.root?;
+    loop {
+        if !child.is_block() {
+            let Some(node) = tree.nodes.get(child.0 as usize) else { break };
+            let met = slabs.meet(simd, node, end);
+            if met.lanes != 0 {
+                child = descend(node, &met, &mut stack);
+                continue;
+            }
+        } else {
+            let Some(block) = tree.block(child) else { break };
+            let before = best.t;
+            query.improve(block, child.count(), &mut best);
+            if best.t < before {
+                end = limit(simd, best.t);
+            }
+        }
+        let Some(next) = stack.pop(beyond(best.t)) else { break };
+        child = next;
+    }
+    (best.primitive != u32::MAX).then_some(best)
+}
+
+/// Whether `ray` has a hit.
+#[inline(always)]
+pub(super) fn any<S: Simd>(simd: S, tree: &Tree, ray: &Ray) -> bool {
+    let prepared = PreparedRay::here(ray);
+    let Some(ray) = prepared.as_ref() else { return false };
+    let slabs = Slabs::new(simd, ray, slabs::Sides::of(ray));
+    let query = Query { simd, tree, ray, shear: ShearLanes::new(simd, ray) };
+    let until = end_of(ray);
+    let end = limit(simd, until.t);
+    let mut stack = Stack::new();
+    let Some(mut child) = tree.root else { return false };
+    loop {
+        if !child.is_block() {
+            let Some(node) = tree.nodes.get(child.0 as usize) else { return false };
+            let lanes = slabs.meet(simd, node, end).lanes;
+            if lanes != 0 {
+                child = descend_anyhow(node, lanes, &mut stack);
+                continue;
+            }
+        } else {
+            let Some(block) = tree.block(child) else { return false };
+            let mut best = until;
+            query.improve(block, child.count(), &mut best);
+            if best.primitive != until.primitive {
+                return true;
+            }
+        }
+        let Some(next) = stack.pop(f32::INFINITY) else { return false };
+        child = next;
+    }
+}
+
+/// As [`descend`], in any order.
+#[inline(always)]
+pub(super) fn descend_anyhow(node: &Node, mut lanes: u32, stack: &mut Stack) -> Child {
+    let children = &node.rows[CHILDREN];
+    let first = Child(children[lane(lanes)]);
+    lanes &= lanes.wrapping_sub(1);
+    while lanes != 0 {
+        stack.push(Waiting::new(f32::NEG_INFINITY, children[lane(lanes)]));
+        lanes &= lanes - 1;
+    }
+    first
+}
