@@ -86,7 +86,7 @@ fn drawn<P: Packed<Color: Channels>, S: Caster>(renderer: &Renderer<'_, S>, dith
     let tile = Tile { x: word(), y: word(), width: word(), height: word() };
     let mut strip = Strip::new(tile, black_box(pixels.as_mut_slice()));
     black_box(strip.bounding_box());
-    black_box(strip.draw_iter(black_box(None::<Pixel<P::Shown>>)).is_ok());
+    black_box(strip.draw_iter(black_box(None::<Pixel<P::Color>>)).is_ok());
     let at = Point::new(word() as i32, word() as i32);
     black_box(display::draw(renderer, &mut strip, at, (word(), word()), dither).is_ok());
 }
