@@ -4,6 +4,8 @@ mod lattice;
 
 use alloc::{vec, vec::Vec};
 
+use glam::Vec3;
+
 use crate::{
     accel::{Plan, Structure},
     arena::{Arena, Full},
@@ -11,7 +13,7 @@ use crate::{
     error::BuildError,
     geometry::Sphere,
     instances::Instance,
-    primitives::{Indices, LatticeMesh, Mesh, Primitives},
+    primitives::{Indices, LatticeMesh, Mesh, Normals, Primitives},
     render::{Material, Numbers},
 };
 
@@ -113,6 +115,13 @@ impl Baker {
         let numbers: Vec<u32> = mesh.vertices().iter().flatten().map(|&number| u32::from(number)).collect();
         words.extend(halves(&numbers));
         self.section(Kind::LatticeVertices, words).indices(mesh.indices(), mesh.vertices().len())
+    }
+
+    /// The same with the normals of a mesh's vertices, in 2 bytes each: see [`Normals`].
+    #[must_use]
+    pub fn normals(self, normals: &[Vec3]) -> Self {
+        let numbers = normals.iter().map(|&normal| Normals::packed(normal).into());
+        self.section(Kind::Normals, counted_halves(normals.len() as u32, numbers))
     }
 
     fn indices(self, indices: Indices<'_>, vertices: usize) -> Self {

@@ -1,7 +1,11 @@
 use glam::Vec3;
 
-use super::{Hit, Mesh, Primitives, Span, Surface};
-use crate::geometry::{Aabb, PreparedRay, Ray};
+use super::{Hit, Mesh, Normals, Primitives, Span, Surface};
+use crate::{
+    asset::{Asset, Stored},
+    error::Error,
+    geometry::{Aabb, PreparedRay, Ray},
+};
 
 /// The least cosine between a mirrored ray and the surface it leaves.
 const GRAZING: f32 = 0.02;
@@ -13,7 +17,7 @@ const CREASE: f32 = 0.82;
 /// A mesh that is shaded as if it were curved: a decorator that blends the normals of a triangle's corners.
 ///
 /// Phong, *Illumination for computer generated pictures*, 1975. What is hit, and where, stays the mesh's. Normals take 12
-/// bytes a vertex.
+/// bytes a vertex in memory, and 2 in an [asset](Normals): `asset.scene::<KdTree, Smooth>()`.
 ///
 /// ```
 /// use hitscan::{List, Mesh, Ray, Scene, glam::Vec3, primitives::Smooth};
@@ -29,7 +33,23 @@ const CREASE: f32 = 0.82;
 #[derive(Clone, Copy, Debug)]
 pub struct Smooth<'a> {
     mesh: Mesh<'a>,
-    normals: &'a [Vec3],
+    normals: Source<'a>,
+}
+
+/// Where normals are.
+#[derive(Clone, Copy, Debug)]
+enum Source<'a> {
+    Plain(&'a [Vec3]),
+    Packed(Normals<'a>),
+}
+
+impl Source<'_> {
+    fn get(&self, vertex: u32) -> Vec3 {
+        match self {
+            Self::Plain(normals) => normals.get(vertex as usize).copied().unwrap_or(Vec3::ZERO),
+            Self::Packed(normals) => normals.get(vertex),
+        }
+    }
 }
 
 impl<'a> Smooth<'a> {
@@ -37,13 +57,25 @@ impl<'a> Smooth<'a> {
     /// so does one that is more than 35 degrees from theirs.
     #[must_use]
     pub const fn new(mesh: Mesh<'a>, normals: &'a [Vec3]) -> Self {
-        Self { mesh, normals }
+        Self { mesh, normals: Source::Plain(normals) }
+    }
+
+    /// The mesh with normals of an asset.
+    #[must_use]
+    pub const fn packed(mesh: Mesh<'a>, normals: Normals<'a>) -> Self {
+        Self { mesh, normals: Source::Packed(normals) }
+    }
+
+    /// The mesh without them.
+    #[must_use]
+    pub const fn mesh(&self) -> &Mesh<'a> {
+        &self.mesh
     }
 
     /// The blended normal, if the triangle is to look curved.
     fn normal(&self, surface: &Surface, triangle: u32) -> Option<Vec3> {
         let corners = self.mesh.indices().get(triangle)?;
-        let [a, b, c] = corners.map(|vertex| self.normals.get(vertex as usize).copied().unwrap_or(Vec3::ZERO));
+        let [a, b, c] = corners.map(|vertex| self.normals.get(vertex));
         if [a, b, c].into_iter().any(|normal| normal.dot(surface.geometric_normal) < CREASE) {
             return None;
         }
@@ -89,6 +121,13 @@ impl Primitives for Smooth<'_> {
 
     fn clip(&self, index: u32, cell: &Aabb) -> Option<Aabb> {
         self.mesh.clip(index, cell)
+    }
+}
+
+/// The sections of a mesh and of its normals.
+impl<'a> Stored<'a> for Smooth<'a> {
+    fn read(asset: &Asset<'a>) -> Result<Self, Error> {
+        Ok(Self::packed(asset.read()?, asset.read()?))
     }
 }
 

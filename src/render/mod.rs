@@ -15,6 +15,7 @@ mod material;
 mod output;
 mod patch;
 mod progressive;
+mod refine;
 mod renderer;
 mod shade;
 mod tile;

@@ -5,6 +5,7 @@ mod binary;
 mod build;
 mod collapse;
 mod node;
+mod permute;
 mod simd;
 mod slabs;
 mod stack;

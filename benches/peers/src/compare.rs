@@ -6,7 +6,7 @@ use crate::{
     clock::{median, time},
     engines::{Contender, Libraries, Memory, Role, Wanted, hitscan, peers},
     mesh::Mesh,
-    rays::{self, Kind, Query, RaySet, View},
+    rays::{self, Kind, Order, Query, RaySet, View},
 };
 
 /// What came of one mesh.
@@ -58,19 +58,21 @@ impl Cast {
     }
 }
 
-/// How much is cast.
+/// How much is cast, and how.
 #[derive(Clone, Copy, Debug)]
 pub struct Effort {
     /// Primary rays.
     pub rays: usize,
     /// Times that each set is cast.
     pub rounds: usize,
+    /// How the rays are ordered.
+    pub order: Order,
 }
 
 /// Builds every engine over the mesh and casts the rays.
 pub fn run(mesh: &Mesh, view: View, effort: Effort, libraries: &Libraries, wanted: &Wanted) -> Result<Outcome, Error> {
     let triangles = mesh.view()?;
-    let sets = guide(&triangles, view, effort.rays)?;
+    let sets = guide(&triangles, view, effort)?;
     let mut memory = Memory::new(mesh.len(), wanted);
     let mut contenders = peers(mesh, libraries, wanted);
     contenders.extend(hitscan(&triangles, mesh.bytes(), &mut memory, wanted)?);
@@ -97,11 +99,11 @@ pub fn run(mesh: &Mesh, view: View, effort: Effort, libraries: &Libraries, wante
 }
 
 /// The rays and their true answers, by hitscan.
-fn guide(mesh: &hitscan::Mesh<'_>, view: View, count: usize) -> Result<[RaySet; 4], Error> {
+fn guide(mesh: &hitscan::Mesh<'_>, view: View, effort: Effort) -> Result<[RaySet; 4], Error> {
     let options = bvh::Options::balanced();
     let mut memory = vec![0; Bvh::words(mesh.indices().len(), &options)];
     let tree = Bvh::build(mesh, &mut Arena::new(&mut memory), &options)?;
-    Ok(rays::all(&Scene::new(tree, mesh)?, view, count))
+    Ok(rays::all(&Scene::new(tree, mesh)?, view, effort.rays, effort.order))
 }
 
 /// Casts the rays with each engine in turn, as many times over as there are rounds.
@@ -178,7 +180,7 @@ mod tests {
     #[test]
     fn all_engines_agree() {
         let libraries = Libraries::open(&[]).expect("without paths, none is an answer");
-        let effort = Effort { rays: 4096, rounds: 1 };
+        let effort = Effort { rays: 4096, rounds: 1, order: Order::Tiles };
         for mesh in [procedural::knot(2000), procedural::soup(1000), procedural::terrain(1000)] {
             let outcome = run(&mesh, View::Outside, effort, &libraries, &Wanted::default()).expect("a mesh");
             assert!(outcome.rays.iter().all(|&rays| rays > 3000), "{}: {:?}", mesh.name, outcome.rays);

@@ -25,7 +25,7 @@ use self::{
     compare::Effort,
     engines::{Libraries, Preset, Wanted},
     mesh::Mesh,
-    rays::View,
+    rays::{Order, View},
 };
 
 /// hitscan beside Embree, obvhs, bvh and parry3d: bytes, build time and rays per second, as Markdown tables.
@@ -68,6 +68,9 @@ struct Comparison {
     /// Primary rays; of the other kinds there is one per hit of these.
     #[arg(long, default_value_t = 250_000)]
     rays: usize,
+    /// The order of the rays that begin where primary ones hit.
+    #[arg(long, value_enum, default_value_t = Order::Tiles)]
+    order: Order,
     /// Times that each set of rays is cast.
     #[arg(long, default_value_t = 7)]
     rounds: usize,
@@ -90,7 +93,7 @@ fn compare(arguments: &Comparison) -> Result<(), Box<dyn Error>> {
         eprintln!("SKIPPED, because it is not installed: Embree");
     }
     let wanted = Wanted(arguments.engine.clone());
-    let effort = Effort { rays: arguments.rays, rounds: arguments.rounds };
+    let effort = Effort { rays: arguments.rays, rounds: arguments.rounds, order: arguments.order };
     let folder = env::var_os("HITSCAN_DATA").map(PathBuf::from);
     let mut outcomes = Vec::new();
     for name in names(&arguments.mesh, folder.as_deref())? {

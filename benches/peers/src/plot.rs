@@ -9,7 +9,7 @@ use crate::{
 };
 
 /// Pixels of each of the four panels.
-const PANEL: (u32, u32) = (720, 480);
+const PANEL: (u32, u32) = (960, 480);
 
 /// Colours that differ for the eyes of all (Okabe and Ito 2008); when they run out, they come again paler.
 const COLORS: [RGBColor; 7] = [
@@ -21,6 +21,9 @@ const COLORS: [RGBColor; 7] = [
     RGBColor(0, 114, 178),
     RGBColor(204, 121, 167),
 ];
+
+/// Where the axis of ratios has its marks.
+const RATIOS: [f64; 13] = [0.1, 0.2, 0.3, 0.4, 0.5, 0.7, 1.0, 1.4, 2.0, 3.0, 4.0, 6.0, 8.0];
 
 /// The colour of a series.
 fn color(place: usize) -> RGBAColor {
@@ -54,12 +57,13 @@ fn panel(
     };
     let all = || names(outcomes).flat_map(points).map(|point| point.1);
     let (least, most) = (all().fold(0.5, f64::min) / 1.2, all().fold(1.0, f64::max) * 1.2);
+    let marks = RATIOS.into_iter().filter(|mark| (least..most).contains(mark)).collect();
     let mut chart = ChartBuilder::on(area)
         .caption(format!("{kind} rays, ratio to {to}"), ("sans-serif", 20))
         .margin(12)
         .x_label_area_size(30)
         .y_label_area_size(50)
-        .build_cartesian_2d(-0.4..last + 0.4, (least..most).log_scale())?;
+        .build_cartesian_2d(-0.4..last * 1.35 + 0.4, (least..most).log_scale().with_key_points(marks))?;
     let name = |x: &f64| {
         let whole = (x - x.round()).abs() < 1.0e-6 && *x > -0.5;
         outcomes.get(x.round() as usize).filter(|_| whole).map_or_else(String::new, |outcome| outcome.name.clone())
@@ -67,9 +71,10 @@ fn panel(
     chart
         .configure_mesh()
         .disable_x_mesh()
+        .max_light_lines(0)
         .x_labels(outcomes.len() * 2)
         .x_label_formatter(&name)
-        .y_label_formatter(&|ratio| format!("{ratio:.2}"))
+        .y_label_formatter(&|ratio| format!("{ratio:.1}"))
         .draw()?;
     for (number, name) in names(outcomes).enumerate() {
         let (points, color) = (points(name), color(number));
@@ -83,7 +88,7 @@ fn panel(
     }
     chart
         .configure_series_labels()
-        .position(SeriesLabelPosition::LowerLeft)
+        .position(SeriesLabelPosition::MiddleRight)
         .background_style(WHITE.mix(0.8))
         .border_style(BLACK)
         .label_font(("sans-serif", 11))

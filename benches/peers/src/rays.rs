@@ -1,5 +1,6 @@
 use std::{f32::consts::TAU, fmt};
 
+use clap::ValueEnum;
 use hitscan::{
     Accelerator, Primitives, Ray, Scene,
     geometry::Aabb,
@@ -81,6 +82,15 @@ impl RaySet {
     }
 }
 
+/// In which order the rays come that begin where others hit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Order {
+    /// That of the picture's tiles: neighbours ask for the same memory.
+    Tiles,
+    /// None, as after many bounces.
+    Shuffled,
+}
+
 /// Where the camera stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum View {
@@ -128,7 +138,7 @@ const AHEAD: Vec3 = Vec3::new(-0.5, -0.45, -0.74);
 ///
 /// The primary ones are a picture. The others begin where the rays of a picture hit that is so much finer that as many of
 /// them do.
-pub fn all<A: Accelerator, P: Primitives>(scene: &Scene<A, P>, view: View, count: usize) -> [RaySet; 4] {
+pub fn all<A: Accelerator, P: Primitives>(scene: &Scene<A, P>, view: View, count: usize, order: Order) -> [RaySet; 4] {
     /// How much finer at most, of each side: for a model that is hardly to be seen.
     const FINEST: f32 = 10.0;
     let bounds = scene.bounds();
@@ -137,9 +147,13 @@ pub fn all<A: Accelerator, P: Primitives>(scene: &Scene<A, P>, view: View, count
     let primary: Vec<Ray> = view.rays(&bounds, side as u32).collect();
     let seen = primary.iter().filter(|ray| scene.any_hit(ray)).count().max(1);
     let fineness = (primary.len() as f32 / seen as f32).sqrt().min(FINEST);
-    let hits: Vec<(Vec3, Vec3)> =
+    let mut hits: Vec<(Vec3, Vec3)> =
         view.rays(&bounds, (side * fineness) as u32).filter_map(|ray| surface(scene, &ray, size * 1.0e-5)).collect();
     let mut random = Random::new(1);
+    if order == Order::Shuffled {
+        // Fisher and Yates 1938.
+        (1..hits.len()).rev().for_each(|last| hits.swap(last, (random.unit() * (last + 1) as f32) as usize));
+    }
     let mut bounce =
         || -> Vec<Ray> { hits.iter().map(|&(point, normal)| Ray::new(point, scatter(normal, &mut random))).collect() };
     let diffuse = bounce();

@@ -9,6 +9,7 @@ use hitscan::{
     accel::Structure,
     asset::{Asset, Kind},
     bake::{self, Baker, OnLattice},
+    glam::Vec3,
 };
 
 use super::{predict, print};
@@ -16,7 +17,7 @@ use crate::{
     chip::{self, Chip},
     failure::{self, Failure},
     output,
-    scene::{Built, Choice, Named, Palette, Preset, Shape, Source, StructureArgs, broken},
+    scene::{Built, Choice, Named, Palette, Preset, Shape, Source, StructureArgs, broken, normals_by_place},
     units::{count, parse_bytes},
     world::{self, write_words},
 };
@@ -48,6 +49,9 @@ pub struct Bake {
     /// Put the vertices on a lattice of 16 bits per coordinate: 6 bytes each instead of 12
     #[arg(long)]
     lattice: bool,
+    /// Store the vertices' normals, in 2 bytes each: triangles are shaded as if they were curved, but for sharp edges
+    #[arg(long, conflicts_with = "lattice")]
+    normals: bool,
     /// The most bytes that the asset may have, such as 64K; the structure is made to fit
     #[arg(long, value_name = "BYTES", value_parser = parse_bytes)]
     fit: Option<usize>,
@@ -65,11 +69,13 @@ impl Bake {
             return Err(Failure::new(what, "name the mesh it was made from"));
         };
         let model = source.view(&self.model)?.mesh;
+        let normals = self.normals.then(|| normals_by_place(&model));
+        let normals = normals.as_deref();
         let snapped = self.lattice.then(|| bake::lattice(&model));
         let snapped = snapped.as_ref();
         let shapes = Triangles::of(&model, snapped)?;
         let unmoved: Vec<u32> = (0..model.len()).collect();
-        let bare = bake(&shapes, &geometry.palette, None, self.keep_numbers.then_some(&unmoved)).len() * 4;
+        let bare = bake(&shapes, normals, &geometry.palette, None, self.keep_numbers.then_some(&unmoved)).len() * 4;
         let most = self.fit.map(|most| room(most, bare)).transpose()?;
         let (built, order) = match self.target {
             Some(chip) => shapes.choose(chip, self.structure.unwrap_or_default(), most),
@@ -84,7 +90,7 @@ impl Bake {
         let structure = built.structure(&model)?;
         let keeps = self.keep_numbers && order != unmoved;
         let palette = if keeps { geometry.palette.clone() } else { geometry.palette.reordered(&order) };
-        let words = bake(&shapes, &palette, Some(structure), keeps.then_some(&order));
+        let words = bake(&shapes, normals, &palette, Some(structure), keeps.then_some(&order));
         if let Some(most) = self.fit.filter(|most| words.len() * 4 > *most) {
             let what = format!("--fit {most}: with this structure ({}) it takes {} bytes", built.name, words.len() * 4);
             return Err(Failure::new(what, "allow more bytes, or choose another structure, such as kdtree"));
@@ -184,6 +190,7 @@ impl<'a> Triangles<'a> {
 
 fn bake(
     shapes: &Triangles<'_>,
+    normals: Option<&[Vec3]>,
     palette: &Palette,
     structure: Option<Structure<'_>>,
     numbers: Option<&Vec<u32>>,
@@ -192,6 +199,9 @@ fn bake(
         Triangles::Plain(mesh) => Baker::new().mesh(mesh),
         Triangles::OnLattice(mesh) => Baker::new().lattice_mesh(mesh),
     };
+    if let Some(normals) = normals {
+        baker = baker.normals(normals);
+    }
     if let Some(structure) = structure {
         baker = baker.structure(structure);
     }
@@ -217,7 +227,9 @@ fn table(
     for section in asset.sections() {
         let bytes = section.words.len() * 4;
         match section.kind {
-            Kind::Vertices | Kind::LatticeVertices | Kind::NarrowIndices | Kind::WideIndices => geometry += bytes,
+            Kind::Vertices | Kind::LatticeVertices | Kind::NarrowIndices | Kind::WideIndices | Kind::Normals => {
+                geometry += bytes;
+            }
             Kind::Materials | Kind::MaterialNumbers => materials += bytes,
             _ => tree += bytes,
         }

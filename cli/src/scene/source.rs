@@ -6,7 +6,7 @@ use hitscan::{
     asset::{Asset, AssetError, Kind},
     bake::Baker,
     glam::Vec3,
-    primitives::{Indices, Primitives, Renumbering, Reordered},
+    primitives::{Indices, Normals, Primitives, Renumbering, Reordered},
     render::Materials,
 };
 
@@ -106,6 +106,8 @@ pub struct View<'a> {
     pub mesh: Mesh<'a>,
     /// Their materials, if it names any.
     pub materials: Option<Materials<'a>>,
+    /// The normals of an asset's vertices, if it has any.
+    pub normals: Option<Normals<'a>>,
     /// The structure of an asset, if it has one.
     pub structure: Option<Structure<'a>>,
     /// The numbers that the triangles of an asset had in its model, if it keeps them.
@@ -187,7 +189,8 @@ impl Source {
                 let palette = &geometry.palette;
                 let materials = (!palette.materials.is_empty()).then(|| palette.as_materials());
                 let mesh = geometry.mesh().map_err(name)?;
-                Ok(View { mesh, materials, structure: None, renumbering: None, y_up: geometry.y_up, seconds: 0.0 })
+                let (y_up, seconds) = (geometry.y_up, 0.0);
+                Ok(View { mesh, materials, normals: None, structure: None, renumbering: None, y_up, seconds })
             }
             Self::Asset { .. } if self.world().is_some() => {
                 let what = format!("{}: is a world of placed scenes", path.display());
@@ -205,6 +208,7 @@ impl Source {
                     asset.read().map_err(damaged)?
                 };
                 let materials = has(Kind::Materials).then(|| asset.read().map_err(damaged)).transpose()?;
+                let normals = has(Kind::Normals).then(|| asset.read().map_err(damaged)).transpose()?;
                 // An asset without one is a list.
                 let structure = match asset.read() {
                     Ok(structure) => Some(structure),
@@ -212,7 +216,8 @@ impl Source {
                     Err(error) => return Err(damaged(error)),
                 };
                 let renumbering = has(Kind::Numbers).then(|| asset.read().map_err(damaged)).transpose()?;
-                Ok(View { mesh, materials, structure, renumbering, y_up: false, seconds: progress.finish() })
+                let (y_up, seconds) = (false, progress.finish());
+                Ok(View { mesh, materials, normals, structure, renumbering, y_up, seconds })
             }
         }
     }

@@ -49,7 +49,10 @@ impl Source {
         let view = self.view(path)?;
         let built = view.build(structure.structure, structure.preset)?;
         let normals = if smooth { normals_by_place(&view.mesh) } else { Vec::new() };
-        let shaded = Smooth::new(view.mesh, &normals);
+        let shaded = match view.normals {
+            Some(normals) if !smooth => Smooth::packed(view.mesh, normals),
+            _ => Smooth::new(view.mesh, &normals),
+        };
         let renumbered = view.renumbered(shaded)?;
         let scene = match &renumbered {
             Some(triangles) => built.scene(triangles)?,
@@ -133,12 +136,12 @@ impl Subject<'_> {
 
 /// Placed scenes, which know their materials.
 #[derive(Debug)]
-struct World<'a, A> {
-    scene: Scene<A, Instances<'a, A, Smooth<'a>>>,
+struct World<'a, A, T> {
+    scene: Scene<T, Instances<'a, A, Smooth<'a>>>,
     materials: &'a [Option<Materials<'a>>],
 }
 
-impl<A: Accelerator> Caster for World<'_, A> {
+impl<A: Accelerator, T: Accelerator> Caster for World<'_, A, T> {
     fn closest_hit(&self, ray: &Ray, _depth: u32) -> Option<Hit> {
         self.scene.closest_hit(ray)
     }
@@ -153,6 +156,10 @@ impl<A: Accelerator> Caster for World<'_, A> {
 
     fn any_hit(&self, ray: &Ray, _depth: u32) -> bool {
         self.scene.any_hit(ray)
+    }
+
+    fn any_hit_near(&self, ray: &Ray, _depth: u32, last: &mut Option<u32>) -> bool {
+        self.scene.any_hit_near(ray, last)
     }
 
     fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
@@ -172,7 +179,7 @@ impl<A: Accelerator> Caster for World<'_, A> {
     }
 }
 
-impl<A: Accelerator + Sync> Queries for World<'_, A> {
+impl<A: Accelerator + Sync, T: Accelerator + Sync> Queries for World<'_, A, T> {
     fn count(&self, ray: &Ray) -> (Option<Hit>, u32) {
         self.scene.count(ray)
     }
@@ -192,17 +199,19 @@ fn with_world<R>(
     }
     let parts: Vec<Asset<'_>> = asset.parts().collect::<Result<_, _>>().map_err(|error| damaged(path, error))?;
     let kind = |asset: &Asset<'_>| asset.read::<Structure<'_>>().ok().and_then(|structure| structure.kind());
-    let top = kind(asset);
-    let common = top.filter(|_| parts.iter().all(|part| kind(part) == top));
-    match common {
-        Some(Kind::KdTree) => opened::<KdTree<'_>, R>(path, asset, &parts, smooth, visit),
-        Some(Kind::Bvh) => opened::<Bvh<'_>, R>(path, asset, &parts, smooth, visit),
-        Some(Kind::DualSplit) => opened::<DualSplit<'_>, R>(path, asset, &parts, smooth, visit),
-        _ => opened::<Structure<'_>, R>(path, asset, &parts, smooth, visit),
+    let first = parts.first().and_then(kind);
+    let common = first.filter(|_| parts.iter().all(|part| kind(part) == first));
+    match (common, kind(asset)) {
+        (Some(Kind::KdTree), Some(Kind::Bvh)) => opened::<KdTree<'_>, Bvh<'_>, R>(path, asset, &parts, smooth, visit),
+        (Some(Kind::Bvh), Some(Kind::Bvh)) => opened::<Bvh<'_>, Bvh<'_>, R>(path, asset, &parts, smooth, visit),
+        (Some(Kind::DualSplit), Some(Kind::Bvh)) => {
+            opened::<DualSplit<'_>, Bvh<'_>, R>(path, asset, &parts, smooth, visit)
+        }
+        _ => opened::<Structure<'_>, Structure<'_>, R>(path, asset, &parts, smooth, visit),
     }
 }
 
-fn opened<'a, A: Accelerator + Stored<'a> + Sync, R>(
+fn opened<'a, A: Accelerator + Stored<'a> + Sync, T: Accelerator + Stored<'a> + Sync, R>(
     path: &Path,
     asset: &Asset<'a>,
     parts: &[Asset<'a>],
@@ -222,7 +231,7 @@ fn opened<'a, A: Accelerator + Stored<'a> + Sync, R>(
     }
     let placed: &[Instance] = asset.read().map_err(damaged)?;
     let instances = Instances::new(&scenes, placed).map_err(broken)?;
-    let structure: A = asset.read().map_err(damaged)?;
+    let structure: T = asset.read().map_err(damaged)?;
     let primitives = instances.numbers();
     let scene = Scene::new(structure, instances).map_err(broken)?;
     let world = World { scene, materials: &materials };

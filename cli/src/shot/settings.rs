@@ -32,7 +32,7 @@ pub struct Settings {
     /// The terms of light to compute, separated by commas
     #[arg(long, value_name = "TERMS", value_delimiter = ',', default_values = ["all"])]
     terms: Vec<Term>,
-    /// Shade the triangles of a mesh or an asset as if they were curved, but for sharp edges
+    /// Shade the triangles of a mesh or an asset as if they were curved, but for sharp edges; an asset with normals is so anyway
     #[arg(long)]
     pub(crate) smooth: bool,
     /// No plate below a mesh or an asset

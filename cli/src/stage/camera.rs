@@ -167,7 +167,7 @@ mod tests {
         let camera: CameraArg = "-1,2,3/0,0,0".parse().unwrap();
         assert_eq!((camera.eye, camera.fov), (Vec3::new(-1.0, 2.0, 3.0), FOV));
         assert_eq!("1,2,3/0,0,0/60".parse::<CameraArg>().unwrap().fov, 60.0);
-        let odd: CameraArg = "-0.1,1e-30,3e20/0.3,-0,7/33.3".parse().unwrap();
+        let odd: CameraArg = "-0.1,1e-30,3e9/0.3,-0,7/33.3".parse().unwrap();
         assert_eq!(odd.to_string().parse(), Ok(odd));
         for bad in [
             "",

@@ -136,6 +136,10 @@ impl<S: Caster + ?Sized> Caster for Counted<'_, S> {
         self.counted(|counter| &counter.any, depth, || self.scene.any_hit(ray, depth))
     }
 
+    fn any_hit_near(&self, ray: &Ray, depth: u32, last: &mut Option<u32>) -> bool {
+        self.counted(|counter| &counter.any, depth, || self.scene.any_hit_near(ray, depth, last))
+    }
+
     fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
         self.scene.surface(ray, hit)
     }
@@ -183,9 +187,10 @@ mod tests {
             }
             assert!(counted.closest_hit_from(&Entries::everything(Aabb::EMPTY), &ray).is_none());
             assert!(!counted.any_hit(&ray, 99));
+            assert!(!counted.any_hit_near(&ray, 99, &mut None));
         });
         let tally = counted.tally();
         assert_eq!(tally.closest[..4], [202, 200, 200, 0]);
-        assert_eq!((tally.shadow[DEPTHS - 1], tally.rays()), (2, 604));
+        assert_eq!((tally.shadow[DEPTHS - 1], tally.rays()), (4, 606));
     }
 }

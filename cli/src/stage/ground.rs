@@ -107,6 +107,10 @@ impl<S: Caster + ?Sized> Caster for Grounded<'_, S> {
         self.plate.any_hit(ray) || self.scene.any_hit(ray, depth)
     }
 
+    fn any_hit_near(&self, ray: &Ray, depth: u32, last: &mut Option<u32>) -> bool {
+        self.plate.any_hit(ray) || self.scene.any_hit_near(ray, depth, last)
+    }
+
     fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
         if hit.primitive == self.number {
             Caster::surface(&self.plate, ray, &Hit { primitive: 0, ..*hit })

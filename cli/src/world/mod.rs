@@ -31,7 +31,11 @@ mod plant;
 
 use std::path::Path;
 
-use hitscan::{Instance, Instances, Mesh, Scene, bake::Baker};
+use hitscan::{
+    Bvh, Instance, Instances, Mesh, Scene,
+    accel::{Plan, bvh},
+    bake::{self, Baker},
+};
 
 use self::file::File;
 use crate::{
@@ -69,7 +73,8 @@ pub fn load(path: &Path, options: &StructureArgs) -> Result<Vec<u32>, Failure> {
     }
     let instances = Instances::place(&scenes, &mut placed)
         .map_err(|error| named(&error, "place fewer, or nearer to the origin"))?;
-    let top = Built::named(&instances, structure, options.preset, None)?;
+    // Boxes of instances overlap: a hierarchy asks each instance once, where space that is divided asks it in every part.
+    let top = bake::build(&instances, &Plan::Bvh(bvh::Options::default())).map_err(broken)?;
     let mut baker = Baker::new();
     for ((part, mesh), scene) in parts.iter().zip(&meshes).zip(&scenes) {
         let mut asset = Baker::new().mesh(mesh).structure(*scene.accelerator());
@@ -78,7 +83,7 @@ pub fn load(path: &Path, options: &StructureArgs) -> Result<Vec<u32>, Failure> {
         }
         baker = baker.part(asset);
     }
-    Ok(baker.instances(instances.placed()).structure(top.structure(&instances)?).finish())
+    Ok(baker.instances(instances.placed()).structure(Bvh::open(&top).map_err(broken)?).finish())
 }
 
 /// Bakes the world that a file describes into an asset.

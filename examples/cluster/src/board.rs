@@ -9,7 +9,7 @@ use async_nats::{
         kv,
         message::PublishMessage,
         object_store::{self, ObjectStore},
-        stream::{self, RetentionPolicy, Stream},
+        stream::{self, DiscardPolicy, RetentionPolicy, StorageType, Stream},
     },
 };
 use futures_util::{StreamExt, TryStreamExt};
@@ -63,16 +63,25 @@ impl Board {
         let tiles = context.get_or_create_stream(tiles).await.map_err(|error| failed(&error))?;
         let results = queue("hitscan-results", "hitscan.result.>", RetentionPolicy::Limits);
         let results = context.get_or_create_stream(results).await.map_err(|error| failed(&error))?;
-        let bucket = |name: &str, max_age, storage| kv::Config {
-            bucket: name.to_owned(),
-            max_age,
-            storage,
-            ..Default::default()
+        // By hand, because `create_key_value` wants to know more of the account than servers before 2.10 tell.
+        let bucket = async |name: &str, max_age, storage| {
+            let config = stream::Config {
+                name: format!("KV_{name}"),
+                subjects: vec![format!("$KV.{name}.>")],
+                max_messages_per_subject: 1,
+                max_age,
+                storage,
+                allow_rollup: true,
+                deny_delete: true,
+                allow_direct: true,
+                discard: DiscardPolicy::New,
+                ..Default::default()
+            };
+            context.get_or_create_stream(config).await.map_err(|error| failed(&error))?;
+            context.get_key_value(name).await.map_err(|error| failed(&error))
         };
-        let jobs = context.create_key_value(bucket("hitscan-jobs", KEPT, stream::StorageType::File));
-        let jobs = jobs.await.map_err(|error| failed(&error))?;
-        let workers = context.create_key_value(bucket("hitscan-workers", ALIVE, stream::StorageType::Memory));
-        let workers = workers.await.map_err(|error| failed(&error))?;
+        let jobs = bucket("hitscan-jobs", KEPT, StorageType::File).await?;
+        let workers = bucket("hitscan-workers", ALIVE, StorageType::Memory).await?;
         let config = object_store::Config { bucket: "hitscan-assets".to_owned(), max_age: KEPT, ..Default::default() };
         let assets = context.create_object_store(config).await.map_err(|error| failed(&error))?;
         Ok(Self { context, tiles, results, jobs, workers, assets })

@@ -71,7 +71,8 @@ pub struct Cast {
 struct Common {
     #[command(flatten)]
     connection: Connection,
-    /// Workers to start on this machine for this job [default: one of all cores without --server, else none]
+    /// Workers to start on this machine for this job: a single one works on all cores, several on one thread each
+    /// [default: 1 if a server is started, else none]
     #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(0..=1024))]
     workers: Option<u16>,
     /// Only enter the job, do not wait for it; give it again to fetch the result
@@ -157,7 +158,7 @@ impl Common {
         if self.detach {
             return Ok(None);
         }
-        let workers = (0..self.workers.unwrap_or(u16::from(alone))).map(|_| self.hire(alone));
+        let workers = (0..self.workers.unwrap_or(u16::from(alone))).map(|_| self.hire());
         let _workers: Vec<Child> = workers.collect::<Result<_, _>>()?;
         let bytes = collect(&board, &id, &job, &mut grow).await?;
         board.finish(&id, &job).await?;
@@ -166,11 +167,11 @@ impl Common {
     }
 
     /// Starts a worker on this machine, which ends with the handle.
-    fn hire(&self, alone: bool) -> Result<Child, Failure> {
+    fn hire(&self) -> Result<Child, Failure> {
         let failed = |error: io::Error| Failure::new(format!("no worker: {error}"), "start one by hand");
         let mut command = Command::new(env::current_exe().map_err(failed)?);
         command.arg("worker").args(self.connection.arguments()).stdin(Stdio::null()).kill_on_drop(true);
-        if !alone || self.workers.is_some_and(|workers| workers > 1) {
+        if self.workers.is_some_and(|workers| workers > 1) {
             command.args(["--threads", "1"]);
         }
         command.spawn().map_err(failed)

@@ -208,11 +208,14 @@ impl Shop {
             }
         };
         // The server may be away for a while; what was computed is not thrown away for that.
-        while let Err(failure) = self.board.store_once(result_subject(id, tile), bytes.clone()).await {
-            eprintln!("hitscan-cluster: tile {tile} of {id}: {failure}");
+        let stored = loop {
+            match self.board.store_once(result_subject(id, tile), bytes.clone()).await {
+                Ok(stored) => break stored,
+                Err(failure) => eprintln!("hitscan-cluster: tile {tile} of {id}: {failure}"),
+            }
             sleep(PAUSE).await;
-        }
-        self.tiles.fetch_add(1, Relaxed);
+        };
+        self.tiles.fetch_add(stored.into(), Relaxed);
         Ok(true)
     }
 

@@ -24,6 +24,21 @@ const FLATTEST = 0x21800000u;
 
 const INFINITE = 0x7f800000u;
 
+// For tests: whether to compute as a GPU may that rounds otherwise, each step an ulp off.
+override ROUGH: bool = false;
+
+fn rough1(x: f32) -> f32 {
+    if !ROUGH {
+        return x;
+    }
+    let bits = bitcast<u32>(x);
+    return x + x * select(-0.5 * EPSILON, 0.5 * EPSILON, ((bits ^ (bits >> 5u)) & 1u) == 1u);
+}
+
+fn rough(v: vec3<f32>) -> vec3<f32> {
+    return vec3(rough1(v.x), rough1(v.y), rough1(v.z));
+}
+
 struct Line {
     origin: vec3<f32>,
     direction: vec3<f32>,
@@ -90,7 +105,7 @@ fn line(origin: vec3<f32>, direction: vec3<f32>, off: vec3<f32>, error: vec3<f32
             result.inverse[axis] = 0.0;
             result.vague[axis] = FAR;
         } else {
-            result.inverse[axis] = 1.0 / d;
+            result.inverse[axis] = rough1(rough1(1.0 / d));
             result.vague[axis] = 2.0 * uncertain / abs(d);
         }
     }
@@ -102,7 +117,7 @@ fn line(origin: vec3<f32>, direction: vec3<f32>, off: vec3<f32>, error: vec3<f32
     result.along = of_axis(result.inverse, result.major);
     let length = abs(turned.z);
     result.usable = result.usable && turned_error.z * 64.0 <= length;
-    result.slope = turned.xy / turned.z;
+    result.slope = rough(rough(vec3(turned.xy / turned.z, 0.0))).xy;
     let steepest = max(abs(result.slope.x), abs(result.slope.y));
     let bent = (max(turned_error.x, turned_error.y) + turned_error.z) / length;
     result.slope_error = 12.0 * EPSILON * steepest + 2.0 * bent;
@@ -131,9 +146,9 @@ fn planes(line: Line, start: vec3<f32>, step: vec3<f32>, low: vec3<f32>, high: v
     // 20 roundings at most, each of something within reach.
     let margin = abs(inverse) * (reach * (32.0 * EPSILON + vague) + 2.0 * line.off + TINY)
         + select(vec3(TINY), vec3(2.0 * longest), level);
-    let base = (start - line.origin) * inverse;
+    let base = rough(rough(start - line.origin) * inverse);
     let unknown = line.vague >= vec3(1.0);
     let enter = select(base - margin, vec3(-FAR), unknown);
     let leave = select(base + margin, vec3(FAR), unknown);
-    return Planes(inverse * step, enter, leave);
+    return Planes(rough(inverse * step), rough(enter), rough(leave));
 }

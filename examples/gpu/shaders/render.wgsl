@@ -104,12 +104,12 @@ fn surface(origin: vec3<f32>, direction: vec3<f32>, found: Search) -> Surface {
     let a = ordered(at.a, ray.major) - start;
     let b = ordered(at.b, ray.major) - start;
     let c = ordered(at.c, ray.major) - start;
-    let p = a.xy - ray.slope * a.z;
-    let q = b.xy - ray.slope * b.z;
-    let r = c.xy - ray.slope * c.z;
-    let u = r.x * q.y - r.y * q.x;
-    let v = p.x * r.y - p.y * r.x;
-    let w = q.x * p.y - q.y * p.x;
+    let p = sheared(a, ray.slope);
+    let q = sheared(b, ray.slope);
+    let r = sheared(c, ray.slope);
+    let u = edge(r, q);
+    let v = edge(p, r);
+    let w = edge(q, p);
     let sum = abs(u) + abs(v) + abs(w);
     var weights = vec2(1.0 / 3.0);
     if sum > TINY {

@@ -113,5 +113,5 @@ fn on_lattice(vertices: u32, vertex: u32, low: vec3<f32>, step: vec3<f32>) -> ve
         half_word(vertices, first + 1u),
         half_word(vertices, first + 2u),
     );
-    return low + vec3<f32>(planes) * step;
+    return rough(low + rough(vec3<f32>(planes) * step));
 }

@@ -86,12 +86,12 @@ fn placed(instance: u32, world: Line) -> Line {
     let x = vector(instance + INVERSE);
     let y = vector(instance + INVERSE + 3u);
     let z = vector(instance + INVERSE + 6u);
-    let from_origin = world.origin - vector(instance + TRANSLATION);
+    let from_origin = rough(world.origin - vector(instance + TRANSLATION));
     let size = abs(from_origin);
-    let origin = x * from_origin.x + y * from_origin.y + z * from_origin.z;
+    let origin = rough(rough(x * from_origin.x + rough(y * from_origin.y)) + z * from_origin.z);
     let off = (abs(x) * size.x + abs(y) * size.y + abs(z) * size.z) * (8.0 * EPSILON) + TINY;
     let d = world.direction;
-    let direction = x * d.x + y * d.y + z * d.z;
+    let direction = rough(rough(x * d.x + rough(y * d.y)) + z * d.z);
     let error = (abs(x) * abs(d.x) + abs(y) * abs(d.y) + abs(z) * abs(d.z)) * (8.0 * EPSILON);
     return line(origin, direction, off, error);
 }

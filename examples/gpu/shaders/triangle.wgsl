@@ -21,9 +21,9 @@ fn turned(v: vec3<f32>, w: vec3<f32>) -> vec3<f32> {
 
 // Between which parameters the line crosses the triangle's plane.
 fn cross_plane(line: Line, triangle: Corners) -> vec2<f32> {
-    let d = triangle.b - triangle.a;
-    let e = triangle.c - triangle.a;
-    let normal = turned(d, e) - turned(e, d);
+    let d = rough(triangle.b - triangle.a);
+    let e = rough(triangle.c - triangle.a);
+    let normal = rough(rough(turned(d, e)) - rough(turned(e, d)));
     // Eight roundings from here to the sums, each of something not larger than this, and what corners may be off.
     let large_d = abs(d) + TINY;
     let large_e = abs(e) + TINY;
@@ -32,36 +32,47 @@ fn cross_plane(line: Line, triangle: Corners) -> vec2<f32> {
         + lost * (sum(large_d) + sum(large_e) + 2.0 * lost);
     let size = abs(normal) + error;
     // From the nearest corner: what is behind a start close to a large triangle is known to be.
-    let a = triangle.a - line.origin;
-    let b = triangle.b - line.origin;
-    let c = triangle.c - line.origin;
+    let a = rough(triangle.a - line.origin);
+    let b = rough(triangle.b - line.origin);
+    let c = rough(triangle.c - line.origin);
     var to_plane = select(b, a, sum(abs(a)) < sum(abs(b)));
     to_plane = select(c, to_plane, sum(abs(to_plane)) < sum(abs(c)));
-    let distance = sum(normal * to_plane);
+    let distance = rough1(sum(rough(normal * to_plane)));
     let distance_error = sum(error * abs(to_plane) + size * (line.off + triangle.off)) + TINY * (1.0 + sum(abs(to_plane)));
-    let speed = sum(normal * line.direction);
+    let speed = rough1(sum(rough(normal * line.direction)));
     let speed_error = sum(error * abs(line.direction) + size * line.error) + TINY * (1.0 + sum(abs(line.direction)));
     if abs(speed) <= 4.0 * speed_error {
         return vec2(-FAR, FAR);
     }
-    let t = distance / speed;
+    let t = rough1(rough1(distance / speed));
     let about = 1.5 * ((distance_error + abs(t) * speed_error) / abs(speed)) + 4.0 * EPSILON * abs(t);
     return vec2(t - about, t + about);
+}
+
+// A corner as the ray sees it that runs along the third axis.
+fn sheared(corner: vec3<f32>, slope: vec2<f32>) -> vec2<f32> {
+    let moved = rough(vec3(slope * corner.z, 0.0)).xy;
+    return rough(vec3(corner.xy - moved, 0.0)).xy;
+}
+
+// Twice the area that the ray spans with an edge.
+fn edge(from_corner: vec2<f32>, to_corner: vec2<f32>) -> f32 {
+    return rough1(rough1(from_corner.x * to_corner.y) - rough1(from_corner.y * to_corner.x));
 }
 
 // The shear test of Woop, Benthin and Wald, Watertight ray/triangle intersection, JCGT 2013, with bounds on all errors.
 fn meet(line: Line, triangle: Corners) -> Meeting {
     let origin = ordered(line.origin, line.major);
-    let a = ordered(triangle.a, line.major) - origin;
-    let b = ordered(triangle.b, line.major) - origin;
-    let c = ordered(triangle.c, line.major) - origin;
+    let a = rough(ordered(triangle.a, line.major) - origin);
+    let b = rough(ordered(triangle.b, line.major) - origin);
+    let c = rough(ordered(triangle.c, line.major) - origin);
     let off = triangle.off + max(max(line.off.x, line.off.y), line.off.z);
-    let p = a.xy - line.slope * a.z;
-    let q = b.xy - line.slope * b.z;
-    let r = c.xy - line.slope * c.z;
-    let u = r.x * q.y - r.y * q.x;
-    let v = p.x * r.y - p.y * r.x;
-    let w = q.x * p.y - q.y * p.x;
+    let p = sheared(a, line.slope);
+    let q = sheared(b, line.slope);
+    let r = sheared(c, line.slope);
+    let u = edge(r, q);
+    let v = edge(p, r);
+    let w = edge(q, p);
 
     let depth = max(max(abs(a.z), abs(b.z)), abs(c.z));
     let spread = (abs(p.x) + abs(p.y)) + (abs(q.x) + abs(q.y)) + (abs(r.x) + abs(r.y));

@@ -84,11 +84,11 @@ fn pop(walk: ptr<function, Walk>, end: f32) -> bool {
 }
 
 fn entered(walk: ptr<function, Walk>, axis: u32, plane: f32) -> f32 {
-    return plane * of_axis((*walk).planes.scale, axis) + of_axis((*walk).planes.enter, axis);
+    return rough1(rough1(plane * of_axis((*walk).planes.scale, axis)) + of_axis((*walk).planes.enter, axis));
 }
 
 fn left(walk: ptr<function, Walk>, axis: u32, plane: f32) -> f32 {
-    return plane * of_axis((*walk).planes.scale, axis) + of_axis((*walk).planes.leave, axis);
+    return rough1(rough1(plane * of_axis((*walk).planes.scale, axis)) + of_axis((*walk).planes.leave, axis));
 }
 
 // Two cells, of which the near one ends at one plane and the far one begins at another.
@@ -178,8 +178,8 @@ fn interval(walk: ptr<function, Walk>, planes: vec3<u32>, end: f32) -> vec2<f32>
     let upper = vec3<f32>(planes >> vec3(16u));
     let bits = vec3((*walk).descending) & vec3(1u, 2u, 4u);
     let falls = bits != vec3(0u);
-    let enter = select(lower, upper, falls) * (*walk).planes.scale + (*walk).planes.enter;
-    let leave = select(upper, lower, falls) * (*walk).planes.scale + (*walk).planes.leave;
+    let enter = rough(rough(select(lower, upper, falls) * (*walk).planes.scale) + (*walk).planes.enter);
+    let leave = rough(rough(select(upper, lower, falls) * (*walk).planes.scale) + (*walk).planes.leave);
     return vec2(
         max(max(enter.x, enter.y), max(enter.z, (*walk).enter)),
         min(min(leave.x, leave.y), min(leave.z, end)),

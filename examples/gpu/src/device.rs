@@ -126,7 +126,7 @@ impl Device {
     #[must_use]
     pub fn binding(&self) -> u64 {
         let limits = self.device.limits();
-        u64::from(limits.max_storage_buffer_binding_size).min(limits.max_buffer_size)
+        limits.max_storage_buffer_binding_size.min(limits.max_buffer_size)
     }
 
     /// Waits until everything that was submitted is done.

@@ -6,10 +6,8 @@
 //! number of a primitive, and the library computes `t` from ray and primitive; every other ray is cast again by the
 //! library. Both ways, the answers are the library's, bit for bit. README.md has the argument.
 //!
-//! * [`Device`]: which GPU.
-//! * [`World`]: the asset as the library sees it.
-//! * [`Uploaded`]: the asset as the GPU sees it, and batches of rays.
-//! * [`Picture`]: renders.
+//! A [`Device`] is a GPU, a [`World`] an asset as the library sees it, an [`Uploaded`] one as the GPU sees it, which casts
+//! batches of rays; [`settle`] makes hits of its answers. A [`Picture`] is drawn of both.
 
 mod alone;
 mod device;

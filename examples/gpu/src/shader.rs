@@ -34,6 +34,8 @@ pub(crate) struct Shader {
     /// In how many bindings the words are, of 2^`shift` pairs each.
     pub(crate) bindings: usize,
     pub(crate) shift: u32,
+    /// Whether each step is an ulp off.
+    pub(crate) rough: bool,
 }
 
 impl Shader {
@@ -81,7 +83,12 @@ impl Shader {
         };
         let source = ShaderSource::Wgsl(self.text().into());
         let module = device.create_shader_module(ShaderModuleDescriptor { label: Some(entry), source });
-        let scene = [("STRUCTURES", f64::from(self.structures)), ("PLACED", f64::from(u8::from(self.placed)))];
+        let switch = |on: bool| f64::from(u8::from(on));
+        let scene = [
+            ("STRUCTURES", f64::from(self.structures)),
+            ("PLACED", switch(self.placed)),
+            ("ROUGH", switch(self.rough)),
+        ];
         let constants: Vec<(&str, f64)> = scene.into_iter().chain(any.map(|any| ("ANY", any))).collect();
         device.create_compute_pipeline(&ComputePipelineDescriptor {
             label: Some(entry),

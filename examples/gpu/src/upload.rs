@@ -93,6 +93,7 @@ pub struct Uploaded {
     words: Vec<Buffer>,
     /// The binary logarithm of the pairs of words in a binding.
     shift: u32,
+    rough: bool,
 }
 
 impl Uploaded {
@@ -129,7 +130,14 @@ impl Uploaded {
         let words: Vec<Buffer> =
             pieces.iter().map(|piece| buffer(bytemuck::cast_slice(piece), BufferUsages::STORAGE)).collect();
         let parts = buffer(bytemuck::cast_slice(&layout.parts), BufferUsages::STORAGE);
-        Ok(Self { device: device.clone(), layout, parts, words, shift })
+        Ok(Self { device: device.clone(), layout, parts, words, shift, rough: false })
+    }
+
+    /// The same with shaders that are an ulp off at each step, as another GPU may be: answers must be the same, but for more
+    /// that are not certain.
+    #[must_use]
+    pub fn roughly(self) -> Self {
+        Self { rough: true, ..self }
     }
 
     /// Bindings that the words take.
@@ -230,7 +238,7 @@ impl Uploaded {
     pub(crate) fn compiled(&self, purpose: Purpose) -> ComputePipeline {
         let Layout { structures, placed, .. } = self.layout;
         let (bindings, shift) = (self.words.len(), if self.words.len() > 1 { self.shift } else { 0 });
-        self.device.pipeline(&Shader { purpose, structures, placed, bindings, shift })
+        self.device.pipeline(&Shader { purpose, structures, placed, bindings, shift, rough: self.rough })
     }
 }
 

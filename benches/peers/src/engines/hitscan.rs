@@ -1,8 +1,8 @@
-use std::time::Duration;
+use std::{cell::RefCell, rc::Rc, time::Duration};
 
 use clap::ValueEnum;
 use hitscan::{
-    Accelerator, Arena, Error, KdTree, List, Mesh, Ray, Scene,
+    Accelerator, Arena, Error, Hit, KdTree, List, Mesh, Ray, Scene,
     accel::{Plan, Structure},
     bvh, kdtree,
     wide::{self, WideBvh},
@@ -21,7 +21,11 @@ const PLANS: [(&str, Plan); 5] = [
 ];
 
 /// And its structure for hosts.
-const WIDE: [(&str, wide::Options); 1] = [("hitscan wide", wide::Options {})];
+const WIDE: [(&str, wide::Options); 3] = [
+    ("hitscan wide best", wide::Options::best()),
+    ("hitscan wide balanced", wide::Options::balanced()),
+    ("hitscan wide fast", wide::Options::fast()),
+];
 
 /// How hitscan's kD-tree is built.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -78,13 +82,20 @@ pub fn hitscan<'a>(
     wanted: &Wanted,
 ) -> Result<Vec<Contender<'a>>, Error> {
     let small = memory.0.iter_mut().map(|(name, plan, words)| contender(name, plan, mesh, bytes, words));
-    let wide = WIDE.into_iter().filter(|(name, _)| wanted.has(name)).map(|(name, options)| wide(name, &options, mesh));
-    small.chain(wide).collect()
-}
-
-fn wide<'a>(name: &str, options: &wide::Options, mesh: &'a Mesh<'a>) -> Result<Contender<'a>, Error> {
-    let (tree, build) = time_build(|| WideBvh::new(mesh, options));
-    Ok(Contender { name: name.to_owned(), role: None, build, engine: Box::new(Wide(tree?)) })
+    let mut contenders = small.collect::<Result<Vec<_>, _>>()?;
+    for (name, options) in WIDE {
+        let batch = format!("{name}, batch");
+        if !wanted.has(name) && !wanted.has(&batch) {
+            continue;
+        }
+        let (tree, build) = time_build(|| WideBvh::new(mesh, &options));
+        let tree = Rc::new(tree?);
+        let single = Box::new(Wide(Rc::clone(&tree)));
+        contenders.push(Contender { name: name.to_owned(), role: None, build, engine: single });
+        let engine = Box::new(Batch { tree, hits: RefCell::default(), any: RefCell::default() });
+        contenders.push(Contender { name: batch, role: None, build, engine });
+    }
+    Ok(contenders)
 }
 
 fn contender<'a>(
@@ -122,7 +133,7 @@ impl<A: Accelerator> Engine for Built<'_, A> {
     }
 
     fn closest(&self, rays: &[Ray], t: &mut Vec<f32>) {
-        t.extend(rays.iter().map(|ray| self.scene.closest_hit(ray).map_or(f32::INFINITY, |hit| hit.t)));
+        t.extend(rays.iter().map(|ray| parameter(self.scene.closest_hit(ray))));
     }
 
     fn any(&self, rays: &[Ray], t: &mut Vec<f32>) {
@@ -131,7 +142,7 @@ impl<A: Accelerator> Engine for Built<'_, A> {
 }
 
 /// The structure for hosts, one ray at a time; it keeps the triangles it reads.
-struct Wide<'a>(WideBvh<&'a Mesh<'a>>);
+struct Wide<'a>(Rc<WideBvh<&'a Mesh<'a>>>);
 
 impl Engine for Wide<'_> {
     fn bytes(&self) -> usize {
@@ -139,10 +150,42 @@ impl Engine for Wide<'_> {
     }
 
     fn closest(&self, rays: &[Ray], t: &mut Vec<f32>) {
-        t.extend(rays.iter().map(|ray| self.0.closest_hit(ray).map_or(f32::INFINITY, |hit| hit.t)));
+        t.extend(rays.iter().map(|ray| parameter(self.0.closest_hit(ray))));
     }
 
     fn any(&self, rays: &[Ray], t: &mut Vec<f32>) {
         t.extend(rays.iter().map(|ray| shadow(self.0.any_hit(ray))));
     }
+}
+
+/// The same, all rays at once; the answers go where those of the last set were.
+struct Batch<'a> {
+    tree: Rc<WideBvh<&'a Mesh<'a>>>,
+    hits: RefCell<Vec<Option<Hit>>>,
+    any: RefCell<Vec<bool>>,
+}
+
+impl Engine for Batch<'_> {
+    fn bytes(&self) -> usize {
+        self.tree.bytes()
+    }
+
+    fn closest(&self, rays: &[Ray], t: &mut Vec<f32>) {
+        let mut hits = self.hits.borrow_mut();
+        hits.resize(rays.len(), None);
+        self.tree.closest_hits(rays, &mut hits);
+        t.extend(hits.iter().map(|&hit| parameter(hit)));
+    }
+
+    fn any(&self, rays: &[Ray], t: &mut Vec<f32>) {
+        let mut hits = self.any.borrow_mut();
+        hits.resize(rays.len(), false);
+        self.tree.any_hits(rays, &mut hits);
+        t.extend(hits.iter().map(|&hit| shadow(hit)));
+    }
+}
+
+/// The `t` of a hit, infinite for a miss.
+fn parameter(hit: Option<Hit>) -> f32 {
+    hit.map_or(f32::INFINITY, |hit| hit.t)
 }

@@ -14,9 +14,10 @@ use hitscan_cli::{Casting, Settings, Source, write_png};
 /// How long anything may take.
 const PATIENCE: Duration = Duration::from_secs(60);
 
-/// The asset that is drawn: two plants.
+/// The asset that is drawn: rows of tetrahedra.
+const MESH: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
 const WORLD: &str =
-    "[part.plant]\nmesh = \"plant:3\"\n[[place]]\npart = \"plant\"\ngrid = [2, 1, 1]\nstep = [1, 0, 0]\n";
+    "[part.a]\nmesh = \"mesh.obj\"\n[[place]]\npart = \"a\"\ngrid = [4, 4, 4]\nstep = [1.5, 1.2, 1.5]\n";
 
 /// A process that ends with its handle.
 pub struct Process(Child);
@@ -51,6 +52,7 @@ impl Cluster {
     /// A server, and `scene.hits`.
     pub fn new() -> Self {
         let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("mesh.obj"), MESH).unwrap();
         fs::write(folder.path().join("scene.toml"), WORLD).unwrap();
         let port = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
         let mut cluster = Self { folder, port, server: None };
@@ -151,6 +153,13 @@ impl Cluster {
         done
     }
 
+    /// How many tiles each worker says it has done.
+    pub fn done_by_workers(&self) -> Vec<u32> {
+        let status = self.run("status");
+        let tiles = status.lines().filter_map(|line| line.split(" threads, ").nth(1)?.split(' ').next());
+        tiles.filter_map(|tiles| tiles.parse().ok()).collect()
+    }
+
     pub fn wait_until(&self, mut condition: impl FnMut() -> bool) {
         let begun = Instant::now();
         while !condition() {
@@ -189,7 +198,7 @@ impl Cluster {
             use sha2::{Digest, Sha256};
             Sha256::digest(&bytes).iter().map(|byte| format!("{byte:02x}")).collect::<String>()
         };
-        bytes[5000] ^= 1;
+        bytes[500] ^= 1;
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap();
         runtime.block_on(async {
             let client = async_nats::connect(format!("127.0.0.1:{}", self.port)).await.unwrap();

@@ -54,8 +54,8 @@ impl Render {
             let stage = Stage {
                 camera: Camera::framing(&bounds, self.from, self.up),
                 lights: vec![
-                    Light::directional(-self.from - self.up * 2.0, Vec3::splat(0.8)),
-                    Light::point(bounds.center() + self.up * bounds.size().length() * 2.0, Vec3::splat(0.3)),
+                    Light::directional(-self.from - self.up * 2.0, Vec3::splat(0.6)),
+                    Light::point(bounds.center() + self.up * bounds.size().length() * 2.0, Vec3::splat(0.2)),
                 ],
                 width: self.size.0,
                 height: self.size.1,

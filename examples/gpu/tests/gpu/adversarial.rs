@@ -10,7 +10,7 @@ fn adversarial_scenes_are_answered_as_by_the_library() {
     let Some(device) = device() else { return };
     let mut random = Random::new(11);
     let (mut scenes, mut rays, mut finished) = (0, 0, 0);
-    for round in 0..150 {
+    for round in 0..90 {
         let family = round % FAMILIES;
         let (vertices, triangles) = adversarial_mesh(&mut random, family, 40);
         let form = [Form::Plain, Form::Numbered, Form::OnLattice][round / 3 % 3];
@@ -22,7 +22,7 @@ fn adversarial_scenes_are_answered_as_by_the_library() {
             finished += tally.finished;
         }
     }
-    assert!(scenes > 50, "{scenes}");
+    assert!(scenes > 40, "{scenes}");
     // Most of these rays are at corners, edges and ties, or invalid.
     println!("{scenes} scenes, {rays} rays, {finished} finished by the library");
     assert!(finished * 100 < rays * 95, "{finished} of {rays}");
