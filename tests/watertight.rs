@@ -46,9 +46,8 @@ struct Count {
     scales: std::collections::BTreeSet<(i32, bool)>,
 }
 
-fn leaks(random: &mut Random, count: &mut Count, memory: &mut [Vec<u32>]) {
-    let far = random.one_in(2);
-    let power = random.below(13) as i32 - 6;
+fn leaks(random: &mut Random, round: usize, count: &mut Count, memory: &mut [Vec<u32>]) {
+    let (power, far) = ((round % 13) as i32 - 6, round / 13 % 2 == 1);
     let mesh = Closed::new(random, 10.0_f64.powi(power), if far { FAR } else { Vec3::ZERO });
     let triangles = Mesh::new(&mesh.vertices, &mesh.triangles[..]).unwrap();
     let list = Scene::new(List::new(&triangles).unwrap(), &triangles).unwrap();
@@ -57,9 +56,13 @@ fn leaks(random: &mut Random, count: &mut Count, memory: &mut [Vec<u32>]) {
         .filter_map(|(kind, memory)| Some(plans::build(random, kind, &triangles, memory)?.1))
         .collect();
     let scenes: Vec<_> = structures.iter().map(|&structure| Scene::new(structure, &triangles).unwrap()).collect();
+    #[cfg(feature = "std")]
+    let wide = hitscan::wide::WideBvh::new(&triangles, &hitscan::wide::Options::default()).unwrap();
     let mut must_hit = |ray: Ray| {
         let hit = list.closest_hit(&ray);
         assert!(hit.is_some() && list.any_hit(&ray), "a leak: {ray:?} {:?} {:?}", mesh.vertices, mesh.triangles);
+        #[cfg(feature = "std")]
+        assert!(bits(wide.closest_hit(&ray)) == bits(hit) && wide.any_hit(&ray), "{ray:?} {:?}", mesh.vertices);
         for scene in &scenes {
             let found = bits(scene.closest_hit(&ray)) == bits(hit) && scene.any_hit(&ray);
             assert!(found, "{ray:?} {:?} {:?}", scene.accelerator().kind(), mesh.vertices);
@@ -102,14 +105,17 @@ fn closed_meshes_do_not_leak() {
     let mut random = Random::new(21 + 100 * seed());
     let mut memory = vec![vec![0; 1 << 17]; plans::KINDS];
     let mut count = Count::default();
-    while count.asked < wanted {
-        leaks(&mut random, &mut count, &mut memory);
+    for round in 0.. {
+        leaks(&mut random, round, &mut count, &mut memory);
+        if count.asked >= wanted {
+            break;
+        }
     }
     println!("{count:?}: no leak, in the list and under {} structures", plans::KINDS);
     // Near they have all sizes, far away those that are more than a few steps of coordinates wide.
     let near = count.scales.iter().filter(|(_, far)| !far).count();
     assert!(near == 13 && count.scales.len() > near + 5, "{:?}", count.scales);
-    assert!(count.inside * 3 > count.asked && count.through * 50 > count.asked, "{count:?}");
+    assert!(count.inside * 3 > count.asked && count.through * 100 > count.asked, "{count:?}");
 }
 
 #[test]

@@ -100,8 +100,11 @@ fn work_and_bytes_per_primitive_are_bounded() {
 
 /// How many nodes a structure has: cells of a grid, pairs or nodes with their leaves of a tree.
 fn nodes(structure: &Structure) -> u32 {
-    if let Structure::Grid(grid) = structure {
-        return grid.resolution().into_iter().product();
+    match structure {
+        Structure::Grid(grid) => return grid.resolution().into_iter().product(),
+        // Carves are nodes that the hierarchy does not tell; each node takes a word at least.
+        Structure::DualSplit(tree) => return tree.ordered_words().count() as u32,
+        _ => {}
     }
     let mut cells: Vec<_> = structure.root().into_iter().collect();
     let mut nodes = 0;
