@@ -90,11 +90,7 @@ impl Runner {
             let Some(node) = tree.nodes.get(self.child.0 as usize) else { return false };
             let met = Slabs::new(simd, &self.ray, self.sides).meet(simd, node, limit(simd, self.best.t));
             if met.lanes != 0 {
-                self.child = if A::ANY {
-                    descend_anyhow(node, met.lanes, stack)
-                } else {
-                    descend(node, &met, stack)
-                };
+                self.child = if A::ANY { descend_anyhow(node, met.lanes, stack) } else { descend(node, &met, stack) };
                 return true;
             }
         } else {

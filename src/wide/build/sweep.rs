@@ -1,7 +1,7 @@
 use super::{bins::Rules, hull::Hull, item::Item};
 
 /// The most items that are sorted.
-pub(super) const MOST: usize = 64;
+pub(super) const MOST: usize = 16;
 
 /// Items by their middles along an axis.
 type Order = [u64; MOST];
