@@ -51,11 +51,10 @@ impl<const N: usize> Bins<N> {
         let mut bins = Self::EMPTY;
         for item in items {
             let places: [u32; 4] = bytemuck::must_cast(grid.rounded(item));
-            for axis in 0..3 {
-                let place = places[axis] as usize % N;
-                let hull = &mut bins.hulls[axis][place];
-                *hull = hull.union(item.hull());
-                bins.counts[axis][place] += 1;
+            for ((hulls, counts), place) in bins.hulls.iter_mut().zip(&mut bins.counts).zip(places) {
+                let place = place as usize % N;
+                hulls[place] = hulls[place].union(item.hull());
+                counts[place] += 1;
             }
         }
         bins

@@ -65,8 +65,8 @@ pub(super) fn build<P: Primitives + Sync + ?Sized>(
     let total = if both { size + items.len() } else { size };
     let monitor = Monitor::new(total as u32, tell);
     let grower = Growth { primitives, options, monitor: &monitor };
-    let whole = both.then(|| grower.grow(&items, items.len()));
-    let best = grower.grow(&items, size);
+    let whole = both.then(|| grower.grow(items.clone(), items.len()));
+    let best = grower.grow(items, size);
     let best = match whole {
         Some(whole) if whole.cost() <= best.cost() => whole,
         _ => best,
@@ -83,11 +83,10 @@ struct Growth<'g, P: ?Sized> {
 
 impl<P: Primitives + Sync + ?Sized> Growth<'_, P> {
     /// The hierarchy over `items`, of at most `size` references.
-    fn grow(&self, items: &[Item], size: usize) -> Grown {
+    fn grow(&self, mut items: Vec<Item>, size: usize) -> Grown {
         let &Self { primitives, options, monitor } = self;
         let count = items.len();
-        let extent = extent(items);
-        let mut items = items.to_vec();
+        let extent = extent(&items);
         items.resize(size, Item::NOTHING);
         let mut spare: Vec<Item> = bytemuck::zeroed_vec(size);
         let mut references = bytemuck::zeroed_vec(size);
