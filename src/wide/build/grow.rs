@@ -23,7 +23,7 @@ use crate::primitives::Primitives;
 const ALONE: usize = 4096;
 
 /// Parts whose boxes have less than this in common, of the weight of everything, are not worth a look at cuts.
-const OVERLAP: f32 = 3.0e-4;
+const OVERLAP: f32 = 1.0e-3;
 
 /// What all tasks share.
 pub(super) struct Grower<'g, P: ?Sized> {
