@@ -1,4 +1,4 @@
-/// How a hierarchy is built: a preset, or one with knobs changed.
+/// How a [`WideBvh`](super::super::WideBvh) is built: a preset, or one with knobs changed.
 ///
 /// ```
 /// use hitscan::wide::Options;
@@ -34,7 +34,7 @@ impl Options {
     /// A good deal of both: half as fast to build.
     #[must_use]
     pub const fn balanced() -> Self {
-        Self { leaf_size: 2, step_cost: 0.3, sorted: 8, reinsertions: 4, reinserted: 0.05, ..Self::fast() }
+        Self { leaf_size: 2, step_cost: 0.3, sorted: 4, reinsertions: 4, reinserted: 0.05, ..Self::fast() }
     }
 
     /// The least time per ray.
