@@ -36,6 +36,11 @@ impl Default for Tree {
 pub(super) type Block = [u32; BLOCK_WORDS];
 
 impl Tree {
+    /// What rays walk through.
+    pub(super) fn bytes(&self) -> usize {
+        size_of_val(&self.nodes[..]) + size_of_val(&self.blocks[..]) + size_of_val(&self.masks[..])
+    }
+
     /// The block, and what lies behind it.
     #[inline(always)]
     pub(super) fn block(&self, child: Child) -> Option<&Block> {
