@@ -16,7 +16,10 @@ use std::ops::ControlFlow;
 
 use fearless_simd::{Level, dispatch};
 
-pub use self::{build::{Options, Progress}, simd::Simd};
+pub use self::{
+    build::{Options, Progress},
+    simd::Simd,
+};
 use self::{node::Child, tree::Tree};
 
 use crate::{

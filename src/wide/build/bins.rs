@@ -34,25 +34,27 @@ impl Grid {
     }
 }
 
-/// What has its middle in each of the bins.
+/// What has its middle in each of at most `N` bins.
 #[derive(Clone)]
-pub(super) struct Bins {
-    hulls: [[Hull; MOST]; 3],
-    counts: [[u32; MOST]; 3],
+pub(super) struct Bins<const N: usize> {
+    hulls: [[Hull; N]; 3],
+    counts: [[u32; N]; 3],
 }
 
-impl Bins {
+impl<const N: usize> Bins<N> {
+    /// Of nothing.
+    pub(super) const EMPTY: Self = Self { hulls: [[Hull::EMPTY; N]; 3], counts: [[0; N]; 3] };
+
     /// Of `items`, in the bins of `grid`.
     #[inline]
     pub(super) fn of(items: &[Item], grid: &Grid) -> Self {
-        let mut bins = Self { hulls: [[Hull::EMPTY; MOST]; 3], counts: [[0; MOST]; 3] };
+        let mut bins = Self::EMPTY;
         for item in items {
             let places: [u32; 4] = bytemuck::must_cast(grid.rounded(item));
-            for axis in 0..3 {
-                let place = places[axis] as usize % MOST;
-                let hull = &mut bins.hulls[axis][place];
-                *hull = hull.union(item.hull());
-                bins.counts[axis][place] += 1;
+            for ((hulls, counts), place) in bins.hulls.iter_mut().zip(&mut bins.counts).zip(places) {
+                let place = place as usize % N;
+                hulls[place] = hulls[place].union(item.hull());
+                counts[place] += 1;
             }
         }
         bins
@@ -69,6 +71,11 @@ impl Bins {
             }
         }
         self
+    }
+
+    /// How many items are before a border.
+    pub(super) fn before(&self, cut: &Cut) -> u32 {
+        self.counts[cut.axis].iter().take((cut.border - ROUND) as usize).sum()
     }
 
     /// The boxes before and behind a border.
@@ -88,22 +95,22 @@ impl Bins {
             }
             let (hulls, counts) = (&self.hulls[axis], &self.counts[axis]);
             // What the parts behind each border cost; then the parts before it.
-            let mut behind = [(0.0, 0); MOST];
+            let mut behind = [(0.0, 0); N];
             let (mut hull, mut count) = (Hull::EMPTY, 0);
-            for bin in (1..grid.count).rev() {
-                hull = hull.union(hulls[bin % MOST]);
-                count += counts[bin % MOST];
-                behind[bin % MOST] = (rules.cost(hull, count), count);
+            for bin in (1..grid.count.min(N)).rev() {
+                hull = hull.union(hulls[bin % N]);
+                count += counts[bin % N];
+                behind[bin % N] = (rules.cost(hull, count), count);
             }
             let (mut hull, mut count) = (Hull::EMPTY, 0);
-            for border in 1..grid.count {
-                hull = hull.union(hulls[(border - 1) % MOST]);
-                count += counts[(border - 1) % MOST];
-                let (other, right) = behind[border % MOST];
+            for border in 1..grid.count.min(N) {
+                hull = hull.union(hulls[(border - 1) % N]);
+                count += counts[(border - 1) % N];
+                let (other, right) = behind[border % N];
                 let cost = rules.cost(hull, count) + other;
                 if cost < least && rules.allow(count, right) {
                     least = cost;
-                    best = Some(Cut { grid: *grid, axis, border: ROUND + border as f32, cost });
+                    best = Some(Cut { grid: *grid, axis, left: count, border: ROUND + border as f32, cost });
                 }
             }
         }
@@ -116,18 +123,18 @@ impl Bins {
 pub(super) struct Rules {
     /// What makes the set's longest edge a length of 1.
     pub(super) scale: f32,
-    /// Binary logarithm of the primitives that are tested at once.
-    pub(super) block: u32,
+    /// Binary logarithm of the items that are tested at once.
+    pub(super) leaf: u32,
     /// The most items that a part may have, so that it can be divided further within the depth.
     pub(super) most: u32,
 }
 
 impl Rules {
-    /// Of a leaf with so many items in `hull`: one test for each block.
+    /// Of a leaf with so many items in `hull`: one test for each full leaf.
     #[inline(always)]
     pub(super) fn cost(&self, hull: Hull, count: u32) -> f32 {
-        let blocks = (count + (1 << self.block) - 1) >> self.block;
-        hull.weight(self.scale) * blocks as f32
+        let tests = (count + (1 << self.leaf) - 1) >> self.leaf;
+        hull.weight(self.scale) * tests as f32
     }
 
     /// The same, had each item its own test.
@@ -148,6 +155,8 @@ impl Rules {
 pub(super) struct Cut {
     grid: Grid,
     axis: usize,
+    /// Items before it.
+    pub(super) left: u32,
     /// The first bin behind it, plus [`ROUND`].
     border: f32,
     /// What both parts cost.

@@ -1,6 +1,7 @@
 //! Builders of the binary hierarchy.
 
 mod bins;
+mod division;
 mod grow;
 mod hull;
 mod item;
@@ -12,26 +13,26 @@ mod progress;
 mod reinsert;
 mod spatial;
 mod sweep;
+mod task;
 
-#[cfg(test)]
-mod probe;
 #[cfg(test)]
 mod tests;
 
 use rayon::prelude::*;
-use std::{ops::ControlFlow, vec, vec::Vec};
+use std::{ops::ControlFlow, vec::Vec};
 
 pub use options::Options;
 pub use progress::Progress;
 
 use self::{
-    grow::{Grower, Task, extent_parallel},
+    grow::Grower,
     item::Item,
     layout::lay_out,
     node::Node,
     partition::CHUNK,
     progress::Monitor,
     reinsert::reinsert,
+    task::{Task, extent},
 };
 use super::binary::Binary;
 use crate::{error::BuildError, primitives::Primitives};
@@ -56,40 +57,84 @@ pub(super) fn build<P: Primitives + Sync + ?Sized>(
     if count == 0 {
         return Ok(Some(Binary::default()));
     }
-    let mut items = gather(primitives)?;
-    let extent = extent_parallel(&items);
-    let count = items.len();
-    let size = (count as f64 * f64::from(options.references.clamp(1.0, 2.0))) as usize;
-    items.resize(size, Item::NOTHING);
-    let mut spare = vec![Item::NOTHING; size];
-    let mut references = vec![0; size];
-    let mut nodes: Vec<Node> = vec![bytemuck::Zeroable::zeroed(); size * 2 - 1];
-    let monitor = Monitor::new(size as u32, tell);
-    let block = options.block.clamp(1, 8).next_power_of_two().ilog2();
-    let grower = Grower { primitives, options, block, whole: extent.hull, monitor: &monitor };
-    if let Some((root, below)) = nodes.split_first_mut() {
-        *root = grower.grow(Task {
-            items: &mut items,
-            count,
-            spare: &mut spare,
-            references: &mut references,
-            nodes: below,
-            first: 0,
-            base: 1,
-            extent,
-            levels: MAX_DEPTH,
-        });
+    let items = gather(primitives)?;
+    let cuts = options.references > 1.0 && (0..count).any(|number| primitives.is_certified(number));
+    let size = if cuts { (f64::from(count) * f64::from(options.references.min(2.0))) as usize } else { items.len() };
+    // Cuts lead to fewer steps, but not always to less work: large primitives may be better off in one piece near the root.
+    let both = cuts && options.reinsertions > 0;
+    let total = if both { size + items.len() } else { size };
+    let monitor = Monitor::new(total as u32, tell);
+    let grower = Growth { primitives, options, monitor: &monitor };
+    let whole = both.then(|| grower.grow(items.clone(), items.len()));
+    let best = grower.grow(items, size);
+    let best = match whole {
+        Some(whole) if whole.cost() <= best.cost() => whole,
+        _ => best,
+    };
+    Ok((!monitor.is_stopped()).then(|| best.finish()))
+}
+
+/// What hierarchies over the same primitives have in common.
+struct Growth<'g, P: ?Sized> {
+    primitives: &'g P,
+    options: &'g Options,
+    monitor: &'g Monitor<'g>,
+}
+
+impl<P: Primitives + Sync + ?Sized> Growth<'_, P> {
+    /// The hierarchy over `items`, of at most `size` references.
+    fn grow(&self, mut items: Vec<Item>, size: usize) -> Grown {
+        let &Self { primitives, options, monitor } = self;
+        let count = items.len();
+        let extent = extent(&items);
+        items.resize(size, Item::NOTHING);
+        let mut spare: Vec<Item> = bytemuck::zeroed_vec(size);
+        let mut references = bytemuck::zeroed_vec(size);
+        let mut nodes: Vec<Node> = bytemuck::zeroed_vec(size * 2 - 1);
+        let leaf = options.leaf_size.clamp(1, 8).next_power_of_two().ilog2();
+        let grower = Grower { primitives, options, leaf, whole: extent.hull, monitor };
+        if let Some((root, below)) = nodes.split_first_mut() {
+            *root = grower.grow(Task {
+                items: &mut items,
+                count,
+                spare: &mut spare,
+                references: &mut references,
+                nodes: below,
+                first: 0,
+                base: 1,
+                extent,
+                levels: MAX_DEPTH,
+            });
+        }
+        let mut grown = Grown { nodes, references };
+        if options.reinsertions > 0 && !monitor.is_stopped() {
+            let (nodes, references) = lay_out(&grown.nodes, &grown.references, |node| node);
+            grown = Grown { nodes, references };
+            reinsert(&mut grown.nodes, options.reinsertions, options.reinserted);
+        }
+        grown
     }
-    if monitor.is_stopped() {
-        return Ok(None);
+}
+
+/// A hierarchy that has not been brought into order.
+struct Grown {
+    nodes: Vec<Node>,
+    references: Vec<u32>,
+}
+
+impl Grown {
+    /// The work that the surface area heuristic expects of a ray, where there are no nodes that nothing links to.
+    fn cost(&self) -> f64 {
+        let Some(root) = self.nodes.first() else { return 0.0 };
+        let scale = root.hull().scale();
+        // A pair of children costs as much as a leaf.
+        self.nodes.iter().map(|node| f64::from(node.hull().weight(scale))).sum()
     }
-    let (mut nodes, mut references) = lay_out(&nodes, &references);
-    if options.reinsertions > 0 {
-        reinsert(&mut nodes, options.reinsertions, options.reinserted);
-        (nodes, references) = lay_out(&nodes, &references);
+
+    fn finish(&self) -> Binary {
+        let (nodes, references) = lay_out(&self.nodes, &self.references, Node::finish);
+        Binary { nodes, references }
     }
-    let nodes = nodes.iter().map(Node::finish).collect();
-    Ok(Some(Binary { nodes, references }))
 }
 
 /// The boxes of all primitives.
@@ -100,10 +145,4 @@ fn gather<P: Primitives + Sync + ?Sized>(primitives: &P) -> Result<Vec<Item>, Bu
         Some(primitive) => Err(BuildError::Bounds { primitive }),
         None => Ok(items),
     }
-}
-
-/// x
-pub(super) fn tune(i: usize) -> f32 {
-    static T: std::sync::OnceLock<std::vec::Vec<f32>> = std::sync::OnceLock::new();
-    T.get_or_init(|| std::env::var("TUNE").unwrap_or("100 1e-5 0 0 0 0".into()).split(' ').map(|s| s.parse().unwrap()).collect())[i]
 }

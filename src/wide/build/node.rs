@@ -44,7 +44,7 @@ impl Node {
     }
 
     /// For those who collapse it.
-    pub(super) fn finish(&self) -> BinaryNode {
+    pub(super) fn finish(self) -> BinaryNode {
         BinaryNode { bounds: self.0.bounds(), first: self.first(), count: self.count() }
     }
 }

@@ -7,9 +7,10 @@
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// Primitives that are tested at once, and the most in a leaf: 1, 2, 4 or 8.
-    pub block: u32,
-    /// What a step from a node to its children costs, in tests of a block.
+    /// The most primitives in a leaf of the binary hierarchy, 1, 2, 4 or 8: fewer take longer, and leave the wide one more to
+    /// choose from.
+    pub leaf_size: u32,
+    /// What a step from a node to its children costs, in tests of a leaf.
     pub step_cost: f32,
     /// The most bins per axis at whose borders sets are divided, 2 … 32.
     pub bins: u32,
@@ -27,27 +28,19 @@ impl Options {
     /// The least time to build.
     #[must_use]
     pub const fn fast() -> Self {
-        Self {
-            block: 4,
-            step_cost: 0.5,
-            bins: 16,
-            sorted: 0,
-            reinsertions: 0,
-            reinserted: 0.0,
-            references: 1.0,
-        }
+        Self { leaf_size: 4, step_cost: 0.5, bins: 16, sorted: 0, reinsertions: 0, reinserted: 0.0, references: 1.0 }
     }
 
     /// A good deal of both: half as fast to build.
     #[must_use]
     pub const fn balanced() -> Self {
-        Self { bins: 32, sorted: 32, reinsertions: 2, reinserted: 0.05, ..Self::fast() }
+        Self { leaf_size: 2, step_cost: 0.3, sorted: 8, reinsertions: 4, reinserted: 0.05, ..Self::fast() }
     }
 
     /// The least time per ray.
     #[must_use]
     pub const fn best() -> Self {
-        Self { reinsertions: 4, references: 1.3, ..Self::balanced() }
+        Self { bins: 32, references: 1.3, ..Self::balanced() }
     }
 }
 

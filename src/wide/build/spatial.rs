@@ -41,8 +41,13 @@ impl Cells {
 
     /// The bins in which an item begins and ends; if it cannot be cut, where its middle is.
     #[inline(always)]
-    fn spans(&self, item: &Item, is_whole: bool) -> [[usize; 4]; 2] {
-        if is_whole { [self.of(item.hull().middle() * 0.5); 2] } else { [self.of(item.hull().low), self.of(Vec4::ZERO - item.hull().high)] }
+    fn span(&self, item: &Item, is_whole: bool) -> [[usize; 4]; 2] {
+        let hull = item.hull();
+        if is_whole {
+            [self.of(hull.middle() * 0.5); 2]
+        } else {
+            [hull.low, Vec4::ZERO - hull.high].map(|point| self.of(point))
+        }
     }
 
     /// Where a bin begins.
@@ -53,42 +58,44 @@ impl Cells {
 
 /// The parts of items in each of the bins, and how many items begin and end there.
 #[derive(Clone)]
-pub(super) struct Parts {
+pub(super) struct Spread {
     hulls: [[Hull; BINS]; 3],
     begin: [[u32; BINS]; 3],
     end: [[u32; BINS]; 3],
 }
 
-impl Parts {
-    /// Of `items`.
+impl Spread {
+    /// Of `items`, of which some can be had in one piece only.
+    ///
+    /// Where an item is cut its box is, too: boxes of the cut triangles take ten times as long and lead to the same planes.
     #[inline(never)]
-    pub(super) fn of<P: Primitives + ?Sized>(items: &[Item], cells: &Cells, primitives: &P) -> Self {
+    pub(super) fn of(items: &[Item], cells: &Cells, is_whole: impl Fn(u32) -> bool) -> Self {
         let counts = [[0; BINS]; 3];
-        let mut parts = Self { hulls: [[Hull::EMPTY; BINS]; 3], begin: counts, end: counts };
+        let mut spread = Self { hulls: [[Hull::EMPTY; BINS]; 3], begin: counts, end: counts };
         for item in items {
-            let [begin, end] = cells.spans(item, !primitives.is_certified(item.number()));
+            let [begin, end] = cells.span(item, is_whole(item.number()));
             for axis in 0..3 {
                 let (begin, end) = (begin[axis], end[axis]);
-                parts.begin[axis][begin] += 1;
-                parts.end[axis][end] += 1;
-                let hulls = &mut parts.hulls[axis];
+                spread.begin[axis][begin] += 1;
+                spread.end[axis][end] += 1;
+                let hulls = &mut spread.hulls[axis];
                 if begin >= end {
                     hulls[begin] = hulls[begin].union(item.hull());
                     continue;
                 }
-                for bin in begin..=end {
-                    let mut cell = item.hull();
+                for (bin, hull) in hulls.iter_mut().enumerate().take(end + 1).skip(begin) {
+                    let mut part = item.hull();
                     if bin > begin {
-                        cell = cell.above(axis, cells.border(axis, bin));
+                        part = part.above(axis, cells.border(axis, bin));
                     }
                     if bin < end {
-                        cell = cell.below(axis, cells.border(axis, bin + 1));
+                        part = part.below(axis, cells.border(axis, bin + 1));
                     }
-                    hulls[bin] = hulls[bin].union(cell);
+                    *hull = hull.union(part);
                 }
             }
         }
-        parts
+        spread
     }
 
     /// Of both sets, in the same bins.
@@ -104,7 +111,14 @@ impl Parts {
     }
 
     /// The plane at which dividing `count` items costs least, and less than `least`, with at most `room` of them cut.
-    pub(super) fn cheapest(&self, cells: &Cells, rules: &Rules, mut least: f32, count: u32, room: u32) -> Option<Plane> {
+    pub(super) fn cheapest(
+        &self,
+        cells: &Cells,
+        rules: &Rules,
+        mut least: f32,
+        count: u32,
+        room: u32,
+    ) -> Option<Plane> {
         let mut best = None;
         for axis in 0..3 {
             if cells.scale[axis] == 0.0 {
@@ -155,8 +169,8 @@ enum Side {
 }
 
 impl Plane {
-    /// Puts the first `count` of `items` and what is cut off from them on either side, the left ones first, with at most
-    /// `room` cuts; how many there are.
+    /// Divides the first `count` of `items`, with at most as many cuts as there are places behind them: the left ones are put
+    /// first, the right ones to the front of `spare`; how many there are.
     #[inline(never)]
     pub(super) fn divide<P: Primitives + ?Sized>(
         &self,
@@ -179,7 +193,6 @@ impl Plane {
             }
             room -= usize::from(matches!(side, Side::Both(..)));
         }
-        items[left..left + right].copy_from_slice(&spare[..right]);
         [left, right]
     }
 

@@ -1,49 +1,63 @@
 use super::{bins::Rules, hull::Hull, item::Item};
 
 /// The most items that are sorted.
-pub(super) const MOST: usize = 64;
+pub(super) const MOST: usize = 16;
 
 /// Items by their middles along an axis.
 type Order = [u64; MOST];
 
-/// Divides a small set between any two neighbours along an axis: puts the left part first, and says how many it has and
-/// what both cost.
-pub(super) fn divide(items: &mut [Item], spare: &mut [Item], rules: &Rules) -> Option<(usize, f32)> {
-    let mut best: Option<(Order, usize)> = None;
-    let mut least = f32::INFINITY;
-    for axis in 0..3 {
-        let order = sort(items, axis);
-        let order = &order[..items.len().min(MOST)];
-        let item = |key: u64| items[(key as u32) as usize].hull();
-        let mut behind = [0.0; MOST];
-        let mut hull = Hull::EMPTY;
-        for (right, (&key, cost)) in (1..).zip(order.iter().zip(&mut behind).rev()) {
-            hull = hull.union(item(key));
-            *cost = rules.cost(hull, right);
-        }
-        let mut hull = Hull::EMPTY;
-        let mut found = None;
-        for (left, (&key, behind)) in (1..).zip(order.iter().zip(behind.iter().skip(1))) {
-            hull = hull.union(item(key));
-            let cost = rules.cost(hull, left) + behind;
-            let right = (items.len() as u32).saturating_sub(left);
-            if cost < least && rules.allow(left, right) {
-                least = cost;
-                found = Some(left as usize);
+/// A division of a small set between two neighbours along an axis.
+pub(super) struct Sorted {
+    order: Order,
+    /// How many items are before it.
+    pub(super) left: usize,
+    /// What both parts cost.
+    pub(super) cost: f32,
+    /// Their boxes.
+    pub(super) hulls: [Hull; 2],
+}
+
+impl Sorted {
+    /// The one that costs least, of at most [`MOST`] items.
+    pub(super) fn best(items: &[Item], rules: &Rules) -> Option<Self> {
+        let mut best: Option<Self> = None;
+        let mut least = f32::INFINITY;
+        for axis in 0..3 {
+            let order = sort(items, axis);
+            let item = |place: usize| items[(order[place] as u32) as usize].hull();
+            // What the parts behind each place cost; then the parts before it.
+            let mut behind = [(0.0, Hull::EMPTY); MOST];
+            let mut hull = Hull::EMPTY;
+            for place in (1..items.len()).rev() {
+                hull = hull.union(item(place));
+                behind[place] = (rules.cost(hull, (items.len() - place) as u32), hull);
+            }
+            let mut hull = Hull::EMPTY;
+            let mut found = None;
+            for (left, behind) in behind.iter().enumerate().take(items.len()).skip(1) {
+                hull = hull.union(item(left - 1));
+                let cost = rules.cost(hull, left as u32) + behind.0;
+                if cost < least && rules.allow(left as u32, (items.len() - left) as u32) {
+                    least = cost;
+                    found = Some((left, hull));
+                }
+            }
+            if let Some((left, hull)) = found {
+                best = Some(Self { order, left, cost: least, hulls: [hull, behind[left].1] });
             }
         }
-        if let Some(left) = found {
-            let mut kept = [0; MOST];
-            kept[..order.len()].copy_from_slice(order);
-            best = Some((kept, left));
+        best
+    }
+
+    /// Puts the left items first, the right ones into `rights`.
+    pub(super) fn place(&self, items: &mut [Item], rights: &mut [Item]) {
+        let mut old = [Item::NOTHING; MOST];
+        old[..items.len()].copy_from_slice(items);
+        let new = self.order.iter().map(|&key| old[(key as u32) as usize % MOST]);
+        for (place, item) in items[..self.left].iter_mut().chain(rights).zip(new) {
+            *place = item;
         }
     }
-    let (order, left) = best?;
-    for (place, &key) in spare.iter_mut().zip(&order[..items.len()]) {
-        *place = items[(key as u32) as usize];
-    }
-    items.copy_from_slice(&spare[..items.len()]);
-    Some((left, least))
 }
 
 /// The order of the middles along an axis; equal ones as they stand.
@@ -55,6 +69,6 @@ fn sort(items: &[Item], axis: usize) -> Order {
         let rank = if bits >> 31 == 0 { bits | 1 << 31 } else { !bits };
         *key = u64::from(rank) << 32 | index as u64;
     }
-    order[..items.len().min(MOST)].sort_unstable();
+    order[..items.len()].sort_unstable();
     order
 }
