@@ -1,15 +1,18 @@
 //! Many rays in one loop: while one waits for memory, the others walk.
+//!
+//! Rays that are at nodes take a step each, then those that are at blocks, so that the processor hardly has to guess what
+//! comes next; which of a node's children are met, and how many, decides about no branch.
 
-use std::vec::Vec;
+use std::{vec, vec::Vec};
 
-use fearless_simd::Simd;
+use fearless_simd::{Bytes, Simd, SimdBase, SimdMask, f32x8, u32x8};
 
 use super::{
-    node::Child,
-    slabs::{Sides, Slabs, limit},
-    stack::Stack,
+    node::{CHILDREN, Child, ORDERS, WIDTH},
+    permute::permute,
+    slabs::{Sides, Slabs, row},
     tree::Tree,
-    walk::{Query, descend, descend_anyhow},
+    walk::{self, Query},
 };
 use crate::{
     geometry::{PreparedRay, Ray, ShearLanes, beyond},
@@ -18,16 +21,41 @@ use crate::{
 };
 
 /// Rays that walk at a time.
-const RUNNERS: usize = 8;
+const RUNNERS: usize = 16;
+
+/// Bytes of a tree that does not fit into the nearer caches.
+const LARGE: usize = 16 << 20;
 
 /// A ray on its way.
+#[derive(Clone, Copy)]
 struct Runner {
     ray: PreparedRay,
     sides: Sides,
     best: Hit,
+    /// The parameter behind which nothing counts.
+    behind: f32,
     child: Child,
+    /// How many children wait.
+    waiting: usize,
     /// The number of the ray.
     index: usize,
+}
+
+/// The runners that are at nodes, or at blocks.
+#[derive(Clone, Copy, Default)]
+struct Places {
+    /// Twice as many as there are, so that an index of five bits needs no check.
+    list: [u8; 2 * RUNNERS],
+    len: usize,
+}
+
+impl Places {
+    /// Adds a runner, if so.
+    #[inline(always)]
+    const fn add(&mut self, place: u8, really: bool) {
+        self.list[self.len % (2 * RUNNERS)] = place;
+        self.len += really as usize;
+    }
 }
 
 /// What a query wants of a ray's hits, and where it puts them.
@@ -35,19 +63,12 @@ trait Answers {
     /// Whether one hit is as good as any other.
     const ANY: bool;
 
-    /// How many there are.
-    fn len(&self) -> usize;
-
     /// The answer to a ray.
     fn put(&mut self, index: usize, hit: Option<Hit>);
 }
 
 impl Answers for &mut [Option<Hit>] {
     const ANY: bool = false;
-
-    fn len(&self) -> usize {
-        <[_]>::len(self)
-    }
 
     #[inline(always)]
     fn put(&mut self, index: usize, hit: Option<Hit>) {
@@ -60,10 +81,6 @@ impl Answers for &mut [Option<Hit>] {
 impl Answers for &mut [bool] {
     const ANY: bool = true;
 
-    fn len(&self) -> usize {
-        <[_]>::len(self)
-    }
-
     #[inline(always)]
     fn put(&mut self, index: usize, hit: Option<Hit>) {
         if let Some(place) = self.get_mut(index) {
@@ -72,93 +89,226 @@ impl Answers for &mut [bool] {
     }
 }
 
+/// The children that wait, of one runner: where they are entered and what they are.
+struct Waiting<'w> {
+    enters: &'w mut [f32],
+    children: &'w mut [u32],
+}
+
+impl Waiting<'_> {
+    /// Adds eight, of which some count.
+    #[inline(always)]
+    fn push<S: Simd>(&mut self, at: usize, enters: f32x8<S>, children: u32x8<S>) {
+        let to = self.enters.get_mut(at..).and_then(<[f32]>::first_chunk_mut::<WIDTH>);
+        let and = self.children.get_mut(at..).and_then(<[u32]>::first_chunk_mut::<WIDTH>);
+        if let (Some(to), Some(and)) = (to, and) {
+            enters.store_array(to);
+            children.store_array(and);
+        }
+    }
+
+    /// The last of `count` that is not entered behind `limit`, and how many wait then.
+    #[inline(always)]
+    fn pop(&self, mut count: usize, limit: f32) -> Option<(Child, usize)> {
+        loop {
+            count = count.checked_sub(1)?;
+            let (&enter, &child) = (self.enters.get(count)?, self.children.get(count)?);
+            if !(enter > limit) {
+                return Some((Child(child), count));
+            }
+        }
+    }
+}
+
 impl Runner {
+    #[inline(always)]
     fn new(ray: &Ray, root: Child, index: usize) -> Option<Self> {
         let ray = PreparedRay::here(ray)?;
         let (sides, best) = (Sides::of(&ray), end_of(&ray));
-        Some(Self { ray, sides, best, child: root, index })
+        Some(Self { ray, sides, best, behind: beyond(best.t), child: root, waiting: 0, index })
     }
 
     fn hit(&self) -> Option<Hit> {
         (self.best.primitive != u32::MAX).then_some(self.best)
     }
 
-    /// Looks at a node or a block; whether there is more.
+    /// Goes on with what waits; whether there is anything.
     #[inline(always)]
-    fn step<S: Simd, A: Answers>(&mut self, simd: S, tree: &Tree, stack: &mut Stack) -> bool {
-        if !self.child.is_block() {
-            let Some(node) = tree.nodes.get(self.child.0 as usize) else { return false };
-            let met = Slabs::new(simd, &self.ray, self.sides).meet(simd, node, limit(simd, self.best.t));
-            if met.lanes != 0 {
-                self.child = if A::ANY { descend_anyhow(node, met.lanes, stack) } else { descend(node, &met, stack) };
-                return true;
-            }
+    fn next(&mut self, waiting: &Waiting<'_>, count: usize) -> bool {
+        let next = waiting.pop(count, self.behind);
+        (self.child, self.waiting) = next.unwrap_or((self.child, 0));
+        next.is_some()
+    }
+
+    /// Looks at a node; whether there is more.
+    #[inline(always)]
+    fn cross<S: Simd, A: Answers>(&mut self, simd: S, tree: &Tree, waiting: &mut Waiting<'_>) -> bool {
+        let Some(node) = tree.nodes.get(self.child.0 as usize) else { return false };
+        let met = Slabs::new(simd, &self.ray, self.sides).meet(simd, node, f32x8::splat(simd, self.behind));
+        let places = if A::ANY {
+            u32x8::load_array(simd, [0, 1, 2, 3, 4, 5, 6, 7])
         } else {
-            let Some(block) = tree.block(self.child) else { return false };
-            let query = Query { simd, tree, ray: &self.ray, shear: ShearLanes::new(simd, &self.ray) };
-            query.improve(block, self.child.count(), &mut self.best);
-            if A::ANY && self.best.primitive != u32::MAX {
-                return false;
+            // The nearest last: by the order of the ray's octant, in which every four bits name a lane.
+            let order = u32x8::splat(simd, node.rows[ORDERS][self.sides.octant & 7]);
+            simd.shrv_u32x8(order, u32x8::load_array(simd, [0, 4, 8, 12, 16, 20, 24, 28])) & 7
+        };
+        let met_there = simd.shrv_u32x8(u32x8::splat(simd, met.lanes), places) & 1;
+        let lanes = places.compress(met_there.simd_eq(1));
+        let children = permute(simd, row(simd, &node.rows[CHILDREN]).bitcast(), lanes);
+        let enters = permute(simd, met.enter.bitcast(), lanes);
+        waiting.push(self.waiting, enters.bitcast(), children);
+        self.next(waiting, self.waiting + met.lanes.count_ones() as usize)
+    }
+
+    /// Looks at a block; whether there is more.
+    #[inline(always)]
+    fn test<S: Simd, A: Answers>(&mut self, simd: S, tree: &Tree, waiting: &Waiting<'_>) -> bool {
+        let Some(block) = tree.block(self.child) else { return false };
+        let query = Query { simd, tree, ray: &self.ray, shear: ShearLanes::new(simd, &self.ray) };
+        query.improve(block, self.child.count(), &mut self.best);
+        self.behind = beyond(self.best.t);
+        !(A::ANY && self.best.primitive != u32::MAX) && self.next(waiting, self.waiting)
+    }
+}
+
+/// The rays that have not begun, and the answers to all.
+struct Queue<'r, A> {
+    rays: &'r [Ray],
+    root: Child,
+    next: usize,
+    answers: A,
+}
+
+impl<A: Answers> Queue<'_, A> {
+    /// The next ray that is valid.
+    #[inline(always)]
+    fn begin(&mut self) -> Option<Runner> {
+        loop {
+            let (ray, index) = (self.rays.get(self.next)?, self.next);
+            self.next += 1;
+            match Runner::new(ray, self.root, index) {
+                None => self.answers.put(index, None),
+                runner => return runner,
             }
         }
-        let next = stack.pop(beyond(self.best.t));
-        self.child = next.unwrap_or(self.child);
-        next.is_some()
+    }
+}
+
+/// All that walks.
+struct Batch<'b, S: Simd, A> {
+    simd: S,
+    tree: &'b Tree,
+    queue: Queue<'b, A>,
+    runners: Vec<Runner>,
+    /// Of each runner this much.
+    room: usize,
+    enters: Vec<f32>,
+    children: Vec<u32>,
+    nodes: Places,
+    blocks: Places,
+}
+
+impl<S: Simd, A: Answers> Batch<'_, S, A> {
+    /// One step of a runner, and of the ray that takes its place if it is done.
+    #[inline(always)]
+    fn step(&mut self, place: u8, at_block: bool) -> Option<()> {
+        let (runner, from) = (self.runners.get_mut(usize::from(place))?, usize::from(place) * self.room);
+        let enters = self.enters.get_mut(from..)?.get_mut(..self.room)?;
+        let children = self.children.get_mut(from..)?.get_mut(..self.room)?;
+        let mut waiting = Waiting { enters, children };
+        let goes_on = if at_block {
+            runner.test::<S, A>(self.simd, self.tree, &waiting)
+        } else {
+            runner.cross::<S, A>(self.simd, self.tree, &mut waiting)
+        };
+        if !goes_on {
+            self.queue.answers.put(runner.index, runner.hit());
+            *runner = self.queue.begin()?;
+        }
+        let is_block = runner.child.is_block();
+        self.nodes.add(place, !is_block);
+        self.blocks.add(place, is_block);
+        Some(())
+    }
+
+    #[inline(always)]
+    fn run(&mut self) {
+        while self.nodes.len + self.blocks.len > 0 {
+            let at_nodes = core::mem::take(&mut self.nodes);
+            for &place in at_nodes.list.iter().take(at_nodes.len) {
+                self.step(place, false);
+            }
+            let at_blocks = core::mem::take(&mut self.blocks);
+            for &place in at_blocks.list.iter().take(at_blocks.len) {
+                self.step(place, true);
+            }
+        }
     }
 }
 
 /// Asks all rays, some at a time.
 #[inline(always)]
 fn run<S: Simd, A: Answers>(simd: S, tree: &Tree, rays: &[Ray], mut answers: A) {
-    let count = rays.len().min(answers.len());
     let Some(root) = tree.root else {
-        (0..count).for_each(|index| answers.put(index, None));
+        (0..rays.len()).for_each(|index| answers.put(index, None));
         return;
     };
-    let mut next = 0;
-    let mut begin = |answers: &mut A| {
-        while next < count {
-            let index = next;
-            next += 1;
-            match rays.get(index).and_then(|ray| Runner::new(ray, root, index)) {
-                None => answers.put(index, None),
-                runner => return runner,
-            }
-        }
-        None
-    };
-    let mut runners: Vec<Runner> = (0..RUNNERS).map_while(|_| begin(&mut answers)).collect();
-    let mut stacks = [const { Stack::new() }; RUNNERS];
-    while !runners.is_empty() {
-        let mut finished = None;
-        for (place, (runner, stack)) in runners.iter_mut().zip(&mut stacks).enumerate() {
-            if !runner.step::<S, A>(simd, tree, stack) {
-                answers.put(runner.index, runner.hit());
-                stack.clear();
-                match begin(&mut answers) {
-                    Some(ray) => *runner = ray,
-                    None => {
-                        finished = Some(place);
-                        break;
-                    }
-                }
-            }
-        }
-        if let Some(place) = finished {
-            stacks.swap(place, runners.len() - 1);
-            runners.swap_remove(place);
-        }
+    let mut queue = Queue { rays, root, next: 0, answers };
+    let mut runners = Vec::with_capacity(RUNNERS);
+    let (mut nodes, mut blocks) = (Places::default(), Places::default());
+    while runners.len() < RUNNERS {
+        let Some(runner) = queue.begin() else { break };
+        nodes.add(runners.len() as u8, !root.is_block());
+        blocks.add(runners.len() as u8, root.is_block());
+        runners.push(runner);
     }
+    let room = tree.stack + WIDTH;
+    let (enters, children) = (vec![0.0; room * runners.len()], vec![0; room * runners.len()]);
+    Batch { simd, tree, queue, runners, room, enters, children, nodes, blocks }.run();
+}
+
+/// Pairs of rays that are looked at to find out whether neighbours go the same way.
+const PAIRS: usize = 16;
+
+/// Whether rays that follow each other go nearly the same way: then the processor guesses right what each will meet, and one
+/// after the other is faster, unless the tree is so large that they wait for memory.
+fn is_coherent(rays: &[Ray]) -> bool {
+    let step = (rays.len() / PAIRS).max(2);
+    let alike = rays.chunks_exact(step).filter(|rays| {
+        let &[a, b, ..] = rays else { return false };
+        let (a, b) = (a.direction, b.direction);
+        a.dot(b) > 0.0 && a.cross(b).length_squared() < 0.01 * a.length_squared() * b.length_squared()
+    });
+    alike.count() * 4 > rays.chunks_exact(step).len() * 3
+}
+
+/// Whether to ask one ray after the other.
+fn one_by_one(tree: &Tree, rays: &[Ray]) -> bool {
+    rays.len() < RUNNERS || (tree.bytes() < LARGE && is_coherent(rays))
 }
 
 /// The least hits of `rays`.
 #[inline(always)]
 pub(super) fn closest<S: Simd>(simd: S, tree: &Tree, rays: &[Ray], hits: &mut [Option<Hit>]) {
-    run(simd, tree, rays, hits);
+    let rays = rays.get(..hits.len()).unwrap_or(rays);
+    if one_by_one(tree, rays) {
+        for (ray, hit) in rays.iter().zip(hits) {
+            *hit = walk::closest(simd, tree, ray);
+        }
+    } else {
+        run(simd, tree, rays, hits);
+    }
 }
 
 /// Whether `rays` have hits.
 #[inline(always)]
 pub(super) fn any<S: Simd>(simd: S, tree: &Tree, rays: &[Ray], hits: &mut [bool]) {
-    run(simd, tree, rays, hits);
+    let rays = rays.get(..hits.len()).unwrap_or(rays);
+    if one_by_one(tree, rays) {
+        for (ray, hit) in rays.iter().zip(hits) {
+            *hit = walk::any(simd, tree, ray);
+        }
+    } else {
+        run(simd, tree, rays, hits);
+    }
 }

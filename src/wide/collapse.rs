@@ -129,8 +129,9 @@ pub(super) fn collapse(binary: &Binary, triangle: impl Fn(u32) -> Triangle) -> T
     } else {
         tree.root = Some(Child::node(0));
         // Nodes to be made, and where they are named.
-        let mut open = vec![(0, None)];
-        while let Some((binary_node, named)) = open.pop() {
+        let mut open = vec![(0, None, 1)];
+        while let Some((binary_node, named, depth)) = open.pop() {
+            tree.stack = tree.stack.max((WIDTH - 1) * depth + 1);
             let index = tree.nodes.len();
             if let Some((node, place)) = named {
                 let parent: &mut Node = &mut tree.nodes[node];
@@ -145,9 +146,10 @@ pub(super) fn collapse(binary: &Binary, triangle: impl Fn(u32) -> Triangle) -> T
                 }
             }
             let inner = children.iter().enumerate().filter(|&(_, &child)| !plan.is_block(child));
-            open.extend(inner.map(|(place, &child)| (child, Some((index, place)))).rev());
+            open.extend(inner.map(|(place, &child)| (child, Some((index, place)), depth + 1)).rev());
         }
     }
+    tree.nodes.iter_mut().for_each(Node::order);
     // So that eight lanes can be read of any row.
     tree.blocks.extend([0; TRIANGLE_WORDS * WIDTH]);
     tree

@@ -5,6 +5,7 @@ mod binary;
 mod build;
 mod collapse;
 mod node;
+mod permute;
 mod simd;
 mod slabs;
 mod stack;
@@ -93,7 +94,7 @@ impl<P: Triangles> WideBvh<P> {
     /// The bytes that rays walk through: all besides the triangles given.
     #[must_use]
     pub fn bytes(&self) -> usize {
-        size_of_val(&self.tree.nodes[..]) + size_of_val(&self.tree.blocks[..]) + size_of_val(&self.tree.masks[..])
+        self.tree.bytes()
     }
 
     /// The first hit of the ray.

@@ -10,7 +10,7 @@ pub(super) const TRIANGLE_WORDS: usize = 10;
 
 /// Eight boxes by their planes, and what is in them: four lines of a cache.
 ///
-/// The rows are the least and the greatest coordinates along x, y and z, then the children.
+/// The rows are the least and the greatest coordinates along x, y and z, the children, and the orders of these.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C, align(64))]
 pub(super) struct Node {
@@ -19,6 +19,10 @@ pub(super) struct Node {
 
 /// The row of the children.
 pub(super) const CHILDREN: usize = 6;
+
+/// The row of the orders in which rays meet the children, one for each octant of directions: the last one met first, four
+/// bits each.
+pub(super) const ORDERS: usize = 7;
 
 impl Node {
     /// A node whose boxes no ray meets. If one is entered all the same, what is there is `child`.
@@ -33,6 +37,25 @@ impl Node {
         let words = [min.x, max.x, min.y, max.y, min.z, max.z].map(f32::to_bits);
         for (row, word) in self.rows.iter_mut().zip(words.into_iter().chain([child.0])) {
             row[place] = word;
+        }
+    }
+
+    /// Finds the orders of the children; all are in their places.
+    pub(super) fn order(&mut self) {
+        for octant in 0..WIDTH {
+            // How far along the diagonal of the octant the corner is that is met first; none of an empty place.
+            let key = |place: usize| -> f32 {
+                let near = |axis: usize| {
+                    let descends = octant >> axis & 1;
+                    let p = f32::from_bits(self.rows[2 * axis + descends][place]);
+                    if descends == 0 { p } else { -p }
+                };
+                near(0) + near(1) + near(2)
+            };
+            let mut places: [usize; WIDTH] = core::array::from_fn(|place| place);
+            places.sort_by(|&a, &b| key(b).total_cmp(&key(a)));
+            let order = places.iter().enumerate().map(|(rank, &place)| (place as u32) << (4 * rank));
+            self.rows[ORDERS][octant] = order.sum();
         }
     }
 }

@@ -34,6 +34,8 @@ pub(super) fn row<S: Simd>(simd: S, words: &[u32; WIDTH]) -> f32x8<S> {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sides {
     near: [usize; 3],
+    /// A bit for each axis along which the ray meets higher coordinates first.
+    pub octant: usize,
     slack: f32,
 }
 
@@ -43,7 +45,8 @@ impl Sides {
         let [x, y, z, _] = &ray.views;
         let near = |axis: usize, ascends: bool| 2 * axis + usize::from(!ascends);
         let near = [near(0, x.ascends()), near(1, y.ascends()), near(2, z.ascends())];
-        Self { near, slack: slack(ray.ray().t_min) }
+        let [x, y, z] = near.map(|row| row & 1);
+        Self { near, octant: x | y << 1 | z << 2, slack: slack(ray.ray().t_min) }
     }
 }
 

@@ -37,11 +37,6 @@ impl Stack {
         Self(heapless::Vec::new())
     }
 
-    #[inline(always)]
-    pub(super) fn clear(&mut self) {
-        self.0.clear();
-    }
-
     /// There is room for what a tree can need.
     #[inline(always)]
     pub(super) fn push(&mut self, waiting: Waiting) {

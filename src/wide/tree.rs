@@ -17,6 +17,8 @@ pub(super) struct Tree {
     pub blocks: Vec<u32>,
     /// Where walks begin; none if there is nothing.
     pub root: Option<Child>,
+    /// The most children that wait while a ray walks: of each node on the way all but one, and the last one's.
+    pub stack: usize,
     pub bounds: Aabb,
     pub sides: Sides,
     /// By number; empty if all rays see all triangles.
@@ -26,7 +28,7 @@ pub(super) struct Tree {
 impl Default for Tree {
     fn default() -> Self {
         let (nodes, blocks, masks) = (Vec::new(), Vec::new(), Vec::new());
-        Self { nodes, blocks, root: None, bounds: Aabb::EMPTY, sides: Sides::Both, masks }
+        Self { nodes, blocks, root: None, stack: 0, bounds: Aabb::EMPTY, sides: Sides::Both, masks }
     }
 }
 
@@ -34,6 +36,11 @@ impl Default for Tree {
 pub(super) type Block = [u32; BLOCK_WORDS];
 
 impl Tree {
+    /// What rays walk through.
+    pub(super) fn bytes(&self) -> usize {
+        size_of_val(&self.nodes[..]) + size_of_val(&self.blocks[..]) + size_of_val(&self.masks[..])
+    }
+
     /// The block, and what lies behind it.
     #[inline(always)]
     pub(super) fn block(&self, child: Child) -> Option<&Block> {

@@ -16,7 +16,7 @@ use crate::{
 
 /// A node's children that are met, at least one: the one to go on with; the others wait.
 #[inline(always)]
-pub(super) fn descend<S: Simd>(node: &Node, met: &Met<S>, stack: &mut Stack) -> Child {
+fn descend<S: Simd>(node: &Node, met: &Met<S>, stack: &mut Stack) -> Child {
     let children = &node.rows[CHILDREN];
     let mut lanes = met.lanes;
     let first = lane(lanes);
@@ -167,7 +167,7 @@ pub(super) fn any<S: Simd>(simd: S, tree: &Tree, ray: &Ray) -> bool {
 
 /// As [`descend`], in any order.
 #[inline(always)]
-pub(super) fn descend_anyhow(node: &Node, mut lanes: u32, stack: &mut Stack) -> Child {
+fn descend_anyhow(node: &Node, mut lanes: u32, stack: &mut Stack) -> Child {
     let children = &node.rows[CHILDREN];
     let first = Child(children[lane(lanes)]);
     lanes &= lanes.wrapping_sub(1);
