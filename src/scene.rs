@@ -97,12 +97,7 @@ impl<A: Accelerator, P: Primitives> Scene<A, P> {
     /// The first hit of the ray.
     #[must_use]
     pub fn closest_hit(&self, ray: &Ray) -> Option<Hit> {
-        // Kept where it was made: to move a prepared ray takes a hundred instructions.
-        let prepared = ray.prepare();
-        let ray = prepared.as_ref()?;
-        let mut closest = Closest::new(ray);
-        self.search(ray, &mut closest);
-        closest.hit()
+        self.first(ray, false)
     }
 
     /// Where walks of the rays in `bundle` may begin, for [`closest_hit_from`](Self::closest_hit_from): the few parts of
@@ -171,7 +166,7 @@ impl<A: Accelerator, P: Primitives> Scene<A, P> {
     /// Whether the ray hits anything: for shadows and visibility, cheaper than the closest hit.
     #[must_use]
     pub fn any_hit(&self, ray: &Ray) -> bool {
-        self.any_hit_where(ray, |_| true)
+        self.first(ray, true).is_some()
     }
 
     /// Whether the ray has a hit that `keep` accepts.
@@ -212,6 +207,18 @@ impl<A: Accelerator, P: Primitives> Scene<A, P> {
     #[must_use]
     pub fn begin(&self, ray: &Ray) -> PausedQuery<'_, A, P> {
         PausedQuery::new(self, ray)
+    }
+
+    /// The first hit of the ray, or one that may not be the first if any is enough.
+    // Out of line, so that the two share it.
+    #[inline(never)]
+    fn first(&self, ray: &Ray, takes_any: bool) -> Option<Hit> {
+        // Kept where it was made: to move a prepared ray takes a hundred instructions.
+        let prepared = ray.prepare();
+        let ray = prepared.as_ref()?;
+        let mut closest = Closest::new(ray).or_any(takes_any);
+        self.search(ray, &mut closest);
+        closest.hit()
     }
 
     /// Offers the hits of the ray, leaf by leaf, until `collector` has enough. All queries that need not pause are this.

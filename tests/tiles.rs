@@ -255,3 +255,33 @@ fn tiles_that_show_nothing_of_a_change_stay_as_they_are() {
     }
     assert!(dirty < 20 && clean > 100, "{dirty} {clean}");
 }
+
+/// Tiles at the end of all numbers, larger than the picture, or without pixels: what is drawn is the picture's, and nothing
+/// panics.
+#[test]
+fn tiles_of_any_numbers_are_filled() {
+    let mesh = Mesh::new(&[Vec3::ZERO, Vec3::X, Vec3::Y], &[[0_u16, 1, 2]]).unwrap();
+    let scene = Scene::new(List::new(&mesh).unwrap(), mesh).unwrap();
+    let camera = Camera::framing(&scene.bounds(), Vec3::Z, Vec3::Y);
+    let renderer = Renderer::new(&scene, camera, 16, 8);
+    for (x, width) in [(u32::MAX, 20), (u32::MAX - 5, 20), (0, 0), (3, 20), (1 << 31, 9)] {
+        for (y, height) in [(u32::MAX, 9), (u32::MAX - 12, 20), (0, 0), (5, 9)] {
+            let tile = Tile { x, y, width, height };
+            let mut pixels = vec![Vec3::NAN; tile.area()];
+            renderer.fill(tile, &mut pixels).unwrap();
+            for (index, light) in pixels.iter().enumerate() {
+                let at = (x.checked_add(index as u32 % width), y.checked_add(index as u32 / width));
+                // What has no number has no colour, either.
+                let expected = match at {
+                    (Some(x), Some(y)) if x < u32::MAX && y < u32::MAX => renderer.pixel(x, y),
+                    _ => Vec3::NAN,
+                };
+                assert_eq!(
+                    light.to_array().map(f32::to_bits),
+                    expected.to_array().map(f32::to_bits),
+                    "{tile:?} {at:?}"
+                );
+            }
+        }
+    }
+}

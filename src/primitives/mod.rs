@@ -4,6 +4,7 @@
 //! structure, query and renderer works on it; the data never carries a trace of the structure.
 
 mod counted;
+mod faces;
 mod from_fn;
 mod hit;
 mod indices;
@@ -13,6 +14,7 @@ mod mesh;
 mod pair;
 mod proximity;
 mod reordered;
+mod smooth;
 mod spheres;
 mod surface;
 mod triangles;
@@ -26,6 +28,7 @@ pub use lattice_triangles::LatticeTriangles;
 pub use mesh::{Mesh, MeshError, Sides};
 pub use proximity::{Nearest, Probe, Proximity};
 pub use reordered::{Order, OrderError, Renumbering, Reordered};
+pub use smooth::Smooth;
 pub use spheres::{SphereError, Spheres};
 pub use surface::Surface;
 pub(crate) use surface::unit;

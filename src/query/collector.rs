@@ -41,16 +41,26 @@ pub(crate) const fn end_of(ray: &PreparedRay) -> Hit {
     Hit { t: ray.ray().t_max, primitive: u32::MAX }
 }
 
-/// Keeps the least hit.
+/// Keeps the least hit, or the first that it is offered.
+///
+/// One type for both, so that a program that asks for closest hits and for any hits holds one walk, not two.
 pub(crate) struct Closest {
     from: Hit,
     best: Hit,
+    /// Whether any hit is enough.
+    takes_any: bool,
 }
 
 impl Closest {
     #[inline(always)]
     pub(crate) const fn new(ray: &PreparedRay) -> Self {
-        Self { from: start_of(ray), best: end_of(ray) }
+        Self { from: start_of(ray), best: end_of(ray), takes_any: false }
+    }
+
+    /// Or the first of those that it is offered, if any is enough.
+    #[inline(always)]
+    pub(crate) const fn or_any(self, takes_any: bool) -> Self {
+        Self { takes_any, ..self }
     }
 
     #[inline(always)]
@@ -73,7 +83,7 @@ impl Collector for Closest {
     #[inline(always)]
     fn take(&mut self, hit: Hit) -> Next {
         self.best = hit;
-        Next::Primitive
+        if self.takes_any { Next::Nothing } else { Next::Primitive }
     }
 }
 

@@ -1,3 +1,4 @@
+use super::Material;
 use crate::{
     accel::{Accelerator, Entries},
     geometry::{Aabb, Bundle, Ray},
@@ -28,6 +29,12 @@ pub trait Caster {
 
     /// The surface at a hit.
     fn surface(&self, ray: &Ray, hit: &Hit) -> Surface;
+
+    /// The material of what was hit, if the scene knows it: worlds of instances do, for whose primitives, all numbered
+    /// through, nobody has a list. Otherwise the renderer's materials count.
+    fn material(&self, _hit: &Hit) -> Option<Material> {
+        None
+    }
 
     /// The box around everything.
     fn bounds(&self) -> Aabb;

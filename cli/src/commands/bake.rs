@@ -15,9 +15,10 @@ use super::{predict, print};
 use crate::{
     chip::{self, Chip},
     failure::{self, Failure},
-    output::{self, write_atomically},
-    scene::{Built, Choice, Named, Palette, Preset, Shape, Source, broken},
+    output,
+    scene::{Built, Choice, Named, Palette, Preset, Shape, Source, StructureArgs, broken},
     units::{count, parse_bytes},
+    world::{self, write_words},
 };
 
 /// Turn a mesh into the asset that firmware includes
@@ -28,7 +29,7 @@ use crate::{
 #[command(after_help = "Examples: hitscan bake bunny.obj.gz -o bunny.hits --preset small --fit 3M\n          \
                         hitscan bake robot.stl -o robot.hits --target m4 --fit 64K")]
 pub struct Bake {
-    /// Mesh (.obj, .stl, .ply, .gltf, .glb, each also with .gz)
+    /// Mesh (.obj, .stl, .ply, .gltf, .glb, each also with .gz), or the description of a world of placed meshes (.toml)
     model: PathBuf,
     /// Asset to write; - for standard output
     #[arg(short, long, value_name = "FILE", default_value = "scene.hits")]
@@ -55,6 +56,9 @@ pub struct Bake {
 impl Bake {
     pub fn run(&self) -> Result<ExitCode, Failure> {
         output::check(&self.output)?;
+        if self.model.extension().is_some_and(|extension| extension == "toml") {
+            return self.world();
+        }
         let source = Source::load(&self.model)?;
         let Source::Model(geometry) = &source else {
             let what = format!("{}: is an asset already", self.model.display());
@@ -85,7 +89,7 @@ impl Bake {
             let what = format!("--fit {most}: with this structure ({}) it takes {} bytes", built.name, words.len() * 4);
             return Err(Failure::new(what, "allow more bytes, or choose another structure, such as kdtree"));
         }
-        write_atomically(&self.output, |file| words.iter().try_for_each(|word| file.write_all(&word.to_le_bytes())))?;
+        write_words(&self.output, &words)?;
         let mut table = table(&words, &built, &structure, geometry.len(), &self.output)?;
         if let Some(snapped) = snapped {
             let _ = writeln!(table, "vertices moved by at most {} to the lattice", snapped.displacement);
@@ -97,6 +101,34 @@ impl Bake {
                 Triangles::OnLattice(mesh) => predict(&mut table, chip, &built, mesh, asset),
             }?;
         }
+        if self.output == Path::new("-") {
+            failure::note(&table);
+        } else {
+            print(&table)?;
+        }
+        Ok(ExitCode::SUCCESS)
+    }
+}
+
+impl Bake {
+    /// Bakes what a file describes, a structure over each part and one over all places.
+    fn world(&self) -> Result<ExitCode, Failure> {
+        let unfit = [
+            ("--target", self.target.is_some()),
+            ("--keep-numbers", self.keep_numbers),
+            ("--lattice", self.lattice),
+            ("--fit", self.fit.is_some()),
+        ];
+        if let Some((option, _)) = unfit.into_iter().find(|(_, given)| *given) {
+            return Err(Failure::new(format!("{option}: is for meshes"), "leave it out for a world"));
+        }
+        let structure = StructureArgs { structure: self.structure, preset: self.preset.unwrap_or_default() };
+        let words = world::load(&self.model, &structure)?;
+        write_words(&self.output, &words)?;
+        let source = Source::Asset { words, positions: Vec::new() };
+        let table = source.with_subject(&self.output, &StructureArgs::default(), false, |subject| {
+            Ok(format!("{}: {}\n{}\n", self.output.display(), subject.size(), subject.structure()))
+        })?;
         if self.output == Path::new("-") {
             failure::note(&table);
         } else {

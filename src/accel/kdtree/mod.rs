@@ -205,7 +205,7 @@ impl<'a> Hierarchy for KdTree<'a> {
                 let above = (empty != Some(Side::Right)).then_some(Cell { bounds: above, node: right });
                 Inside::Cells([below, above])
             }
-            Kind::Leaf { count: 1, .. } => Inside::Leaf(Leaf::of(References::wide(node.payload()), 0, 1)),
+            Kind::Leaf { first, count: 1 } => Inside::Leaf(Leaf::of(References::IDENTITY, first, 1)),
             Kind::Leaf { first, count } => Inside::Leaf(Leaf::of(self.references, first, count)),
         }
     }

@@ -1,4 +1,7 @@
-use hitscan::{Hit, Mesh, PreparedRay, Primitives, Ray, Span, geometry::Aabb, glam::Vec3, primitives::Surface};
+use glam::Vec3;
+
+use super::{Hit, Mesh, Primitives, Span, Surface};
+use crate::geometry::{Aabb, PreparedRay, Ray};
 
 /// The least cosine between a mirrored ray and the surface it leaves.
 const GRAZING: f32 = 0.02;
@@ -9,37 +12,38 @@ const CREASE: f32 = 0.82;
 
 /// A mesh that is shaded as if it were curved: a decorator that blends the normals of a triangle's corners.
 ///
-/// Phong, *Illumination for computer generated pictures*, 1975. What is hit, and where, stays the mesh's.
+/// Phong, *Illumination for computer generated pictures*, 1975. What is hit, and where, stays the mesh's. Normals take 12
+/// bytes a vertex.
+///
+/// ```
+/// use hitscan::{List, Mesh, Ray, Scene, glam::Vec3, primitives::Smooth};
+/// let vertices = [Vec3::ZERO, Vec3::X, Vec3::Y];
+/// let mesh = Mesh::new(&vertices, &[[0_u16, 1, 2]])?;
+/// let normals = [Vec3::Z, Vec3::new(0.3, 0.0, 1.0).normalize(), Vec3::Z];
+/// let scene = Scene::new(List::new(&mesh)?, Smooth::new(mesh, &normals))?;
+/// let ray = Ray::new(Vec3::new(0.5, 0.2, 1.0), Vec3::NEG_Z);
+/// let surface = scene.surface(&ray, &scene.closest_hit(&ray).unwrap());
+/// assert!(surface.geometric_normal == Vec3::Z && surface.shading_normal.x > 0.1);
+/// # Ok::<(), hitscan::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Smooth<'a> {
+pub struct Smooth<'a> {
     mesh: Mesh<'a>,
     normals: &'a [Vec3],
 }
 
-/// The mean normal of the triangles around each vertex, weighted by their areas.
-pub(crate) fn normals(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
-    let mut sums = vec![Vec3::ZERO; vertices.len()];
-    for corners in triangles {
-        let [a, b, c] = corners.map(|corner| vertices.get(corner as usize).copied().unwrap_or_default());
-        let normal = (b - a).cross(c - a);
-        for corner in corners {
-            if let Some(sum) = sums.get_mut(*corner as usize) {
-                *sum += normal;
-            }
-        }
-    }
-    sums.into_iter().map(Vec3::normalize_or_zero).collect()
-}
-
 impl<'a> Smooth<'a> {
-    /// The mesh with a normal for each vertex; a missing or zero normal leaves the triangles around it flat.
-    pub(crate) const fn new(mesh: Mesh<'a>, normals: &'a [Vec3]) -> Self {
+    /// The mesh with a normal of length 1 for each vertex; a missing or zero normal leaves the triangles around it flat, and
+    /// so does one that is more than 35 degrees from theirs.
+    #[must_use]
+    pub const fn new(mesh: Mesh<'a>, normals: &'a [Vec3]) -> Self {
         Self { mesh, normals }
     }
 
+    /// The blended normal, if the triangle is to look curved.
     fn normal(&self, surface: &Surface, triangle: u32) -> Option<Vec3> {
         let corners = self.mesh.indices().get(triangle)?;
-        let [a, b, c] = corners.map(|vertex| self.normals.get(vertex as usize).copied().unwrap_or_default());
+        let [a, b, c] = corners.map(|vertex| self.normals.get(vertex as usize).copied().unwrap_or(Vec3::ZERO));
         if [a, b, c].into_iter().any(|normal| normal.dot(surface.geometric_normal) < CREASE) {
             return None;
         }
@@ -49,7 +53,7 @@ impl<'a> Smooth<'a> {
 }
 
 impl Primitives for Smooth<'_> {
-    #[inline]
+    #[inline(always)]
     fn len(&self) -> u32 {
         self.mesh.len()
     }
@@ -58,7 +62,7 @@ impl Primitives for Smooth<'_> {
         self.mesh.bounds(index)
     }
 
-    #[inline]
+    #[inline(always)]
     fn intersect(&self, index: u32, ray: &PreparedRay, span: &Span) -> Option<Hit> {
         self.mesh.intersect(index, ray, span)
     }
@@ -73,6 +77,12 @@ impl Primitives for Smooth<'_> {
         }
     }
 
+    #[inline(always)]
+    fn mask(&self, index: u32) -> u32 {
+        self.mesh.mask(index)
+    }
+
+    #[inline(always)]
     fn is_certified(&self, index: u32) -> bool {
         self.mesh.is_certified(index)
     }
