@@ -5,7 +5,7 @@
 
 use std::{vec, vec::Vec};
 
-use fearless_simd::{Bytes, Simd, SimdBase, SimdMask, f32x8, u32x8};
+use fearless_simd::{Bytes, Simd, SimdBase, f32x8, u32x8};
 
 use super::{
     node::{CHILDREN, Child, ORDERS, WIDTH},
