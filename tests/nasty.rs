@@ -163,6 +163,31 @@ impl Tally {
         }
     }
 
+    /// Whether the wide tree answers as the list, with any instructions.
+    #[cfg(feature = "std")]
+    fn ask_wide(&mut self, case: &Case<'static>, mesh: &Mesh<'_>) {
+        use hitscan::wide::{Options, Simd, WideBvh};
+        let list = Scene::new(List::new(mesh).unwrap(), mesh).unwrap();
+        let rays: Vec<Ray> = case.rays.iter().map(|question| question.ray).collect();
+        for options in [Options::fast(), Options::best()] {
+            let mut wide = WideBvh::new(mesh, &options).unwrap();
+            for simd in Simd::available() {
+                wide = wide.with_simd(simd);
+                // So many that they walk in turns.
+                let many: Vec<Ray> = rays.iter().cycle().take(if rays.is_empty() { 0 } else { 100 }).copied().collect();
+                let mut hits = vec![None; many.len()];
+                wide.closest_hits(&many, &mut hits);
+                for (ray, hit) in many.iter().zip(hits) {
+                    let expected = bits(list.closest_hit(ray));
+                    let same = [bits(hit), bits(wide.closest_hit(ray))] == [expected; 2];
+                    if !(same && wide.any_hit(ray) == expected.is_some()) {
+                        self.failures.push(format!("{} wide {simd:?}: {hit:?} for {ray:?}", case.id));
+                    }
+                }
+            }
+        }
+    }
+
     fn run(&mut self, case: &Case<'static>) {
         let triangles: Vec<[u32; 3]> =
             (0..case.vertices.len() as u32 / 3).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
@@ -174,6 +199,8 @@ impl Tally {
                 self.ask_all(case, &both);
                 if case.spheres.is_empty() {
                     self.ask_all(case, &both.0);
+                    #[cfg(feature = "std")]
+                    self.ask_wide(case, &both.0);
                 }
             }
             Err(error) => {

@@ -149,10 +149,34 @@ fn test(folder: &Path, name: &str) -> Verdict {
             verdict.structures += hits.iter().zip(&expected).filter(|(a, b)| bits(**a) != bits(**b)).count();
         }
     }
+    #[cfg(feature = "std")]
+    {
+        verdict.structures += wide(&mesh, &rays, &expected);
+    }
     let list = Scene::new(List::new(&mesh).unwrap(), &mesh).unwrap();
     let sample = rays.iter().zip(&expected).step_by(1 + triangles.len() / 1500);
     verdict.list = sample.filter(|(ray, hit)| bits(list.closest_hit(ray)) != bits(**hit)).count();
     verdict
+}
+
+/// Rays that the wide tree answers otherwise than `expected`, with any instructions, one by one or in batches.
+#[cfg(feature = "std")]
+fn wide(mesh: &Mesh<'_>, rays: &[Ray], expected: &[Option<Hit>]) -> usize {
+    use hitscan::wide::{Options, Simd, WideBvh};
+    let mut differ = 0;
+    let mut tree = WideBvh::new(mesh, &Options::best()).unwrap();
+    for simd in Simd::available() {
+        tree = tree.with_simd(simd);
+        let (mut closest, mut any) = (vec![None; rays.len()], vec![false; rays.len()]);
+        tree.closest_hits(rays, &mut closest);
+        tree.any_hits(rays, &mut any);
+        for (((ray, closest), any), expected) in rays.iter().zip(closest).zip(any).zip(expected) {
+            let same = bits(closest) == bits(*expected) && any == expected.is_some();
+            let single = bits(tree.closest_hit(ray)) == bits(*expected) && tree.any_hit(ray) == expected.is_some();
+            differ += usize::from(!(same && single));
+        }
+    }
+    differ
 }
 
 #[test]

@@ -6,11 +6,18 @@ mod common;
 
 use common::{FAMILIES, Random, adversarial_mesh, adversarial_ray, bits};
 use hitscan::{
-    Hit, List, Mesh, Ray, Scene,
+    Hit, LatticeMesh, List, Mesh, Ray, Scene,
+    geometry::Aabb,
     glam::Vec3,
-    primitives::Sides,
+    parallel,
+    primitives::{Sides, Triangles},
+    render::{Camera, Light, Renderer},
     wide::{Options, Simd, WideBvh},
 };
+
+fn build<P: Triangles + Sync>(triangles: P) -> WideBvh<P> {
+    WideBvh::new(triangles, &Options::default()).unwrap()
+}
 
 /// Casts rays with instructions of one kind.
 fn compare(simd: Simd, seed: u64, rays: usize) {
@@ -28,7 +35,8 @@ fn compare(simd: Simd, seed: u64, rays: usize) {
             mesh = mesh.with_masks(&masks).unwrap();
         }
         let list = Scene::new(List::new(&mesh).unwrap(), &mesh).unwrap();
-        let wide = WideBvh::new(&mesh, &Options::default()).unwrap().with_simd(simd);
+        let options = random.pick(&[Options::fast(), Options::balanced(), Options::best()]);
+        let wide = WideBvh::new(&mesh, &options).unwrap().with_simd(simd);
         let rays: Vec<Ray> = (0..random.pick(&[1, 3, 8, 64, 1000]))
             .map(|_| {
                 let mask = random.pick(&[0, 1, 2, u32::MAX, u32::MAX, u32::MAX]);
@@ -64,10 +72,67 @@ fn the_wide_tree_answers_as_the_list() {
     });
 }
 
+/// Hills of `side` x `side` x 2 triangles.
+fn hills(side: u32) -> (Vec<Vec3>, Vec<[u32; 3]>) {
+    let place = |i: u32| i as f32 / side as f32;
+    let points = (0..=side).flat_map(|j| (0..=side).map(move |i| (place(i), place(j))));
+    let vertices = points.map(|(x, z)| Vec3::new(x, (x * 9.0).sin() * (z * 7.0).cos() * 0.1, z)).collect();
+    let cells = (0..side).flat_map(|j| (0..side).map(move |i| j * (side + 1) + i));
+    (vertices, cells.flat_map(|a| [[a, a + 1, a + side + 1], [a + 1, a + side + 2, a + side + 1]]).collect())
+}
+
+#[test]
+fn pictures_are_those_of_a_list() {
+    let (vertices, triangles) = hills(12);
+    let mesh = Mesh::new(&vertices, &triangles[..]).unwrap();
+    let (list, wide) = (Scene::new(List::new(&mesh).unwrap(), &mesh).unwrap(), build(&mesh));
+    let camera = Camera::framing(&wide.bounds(), Vec3::new(0.4, 1.0, 0.5), Vec3::Y);
+    let lights = [Light::directional(Vec3::new(-1.0, -2.0, -1.0), Vec3::ONE)];
+    let [mut one, mut other] = [const { [[0_u8; 3]; 48 * 32] }; 2];
+    parallel::render(&Renderer::new(&list, camera, 48, 32).with_lights(&lights), &mut one).unwrap();
+    parallel::render(&Renderer::new(&wide, camera, 48, 32).with_lights(&lights), &mut other).unwrap();
+    assert!(one == other);
+}
+
+#[test]
+fn lattices_are_answered_as_by_a_list() {
+    let mut random = Random::new(5);
+    let vertices: Vec<[u16; 3]> = (0..90).map(|_| [0; 3].map(|_| random.below(9) as u16 * 8191)).collect();
+    let triangles: Vec<[u16; 3]> = (0..30).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+    let frame = Aabb::new(Vec3::splat(-1.0), Vec3::splat(2.0));
+    let mesh = LatticeMesh::new(&frame, &vertices, &triangles[..]).unwrap();
+    let (list, wide) = (Scene::new(List::new(&mesh).unwrap(), &mesh).unwrap(), build(&mesh));
+    let corners: Vec<Vec3> = mesh.positions().collect();
+    for _ in 0..20_000 {
+        let ray = adversarial_ray(&mut random, 1, &corners);
+        assert_eq!(bits(wide.closest_hit(&ray)), bits(list.closest_hit(&ray)), "{ray:?}");
+    }
+}
+
+#[test]
+fn triangles_that_cannot_be_told_apart_are_divided() {
+    let count = 65_537;
+    let mesh_of = vec![[0_u16, 1, 2]; count];
+    let mesh = Mesh::new(&[Vec3::ZERO, Vec3::X, Vec3::Y], &mesh_of[..]).unwrap();
+    let wide = build(&mesh);
+    assert!(wide.bytes() < count * 65, "{}", wide.bytes());
+    let ray = Ray::new(Vec3::new(0.2, 0.2, -1.0), Vec3::Z);
+    assert_eq!(wide.closest_hit(&ray), Some(Hit { t: 1.0, primitive: 0 }));
+    let flat = Mesh::new(&[Vec3::ZERO; 3], &mesh_of[..]).unwrap();
+    assert_eq!(build(&flat).closest_hit(&ray), None);
+}
+
+#[test]
+fn a_triangle_takes_less_than_a_line_of_a_cache() {
+    let (vertices, triangles) = hills(100);
+    let wide = build(Mesh::new(&vertices, &triangles[..]).unwrap());
+    assert!(wide.bytes() < triangles.len() * 64, "{}", wide.bytes());
+}
+
 #[test]
 fn nothing_is_hit_in_an_empty_tree() {
     let mesh = Mesh::new(&[], &[] as &[[u16; 3]; 0]).unwrap();
-    let wide = WideBvh::new(&mesh, &Options::default()).unwrap();
+    let wide = build(&mesh);
     let ray = Ray::new(Vec3::ZERO, Vec3::Z);
     assert_eq!((wide.closest_hit(&ray), wide.any_hit(&ray)), (None, false));
     let (mut closest, mut any) = ([Some(Hit { t: 1.0, primitive: 0 }); 3], [true; 3]);

@@ -5,14 +5,14 @@
 
 use std::{vec, vec::Vec};
 
-use fearless_simd::{Bytes, Simd, SimdBase, SimdMask, f32x8, u32x8};
+use fearless_simd::{Bytes, Simd, SimdBase, f32x8, u32x8};
 
 use super::{
     node::{CHILDREN, Child, ORDERS, WIDTH},
     permute::permute,
-    slabs::{Sides, Slabs, limit, row},
+    slabs::{Sides, Slabs, row},
     tree::Tree,
-    walk::Query,
+    walk::{self, Query},
 };
 use crate::{
     geometry::{PreparedRay, Ray, ShearLanes, beyond},
@@ -23,12 +23,17 @@ use crate::{
 /// Rays that walk at a time.
 const RUNNERS: usize = 16;
 
+/// Bytes of a tree that does not fit into the nearer caches.
+const LARGE: usize = 16 << 20;
+
 /// A ray on its way.
 #[derive(Clone, Copy)]
 struct Runner {
     ray: PreparedRay,
     sides: Sides,
     best: Hit,
+    /// The parameter behind which nothing counts.
+    behind: f32,
     child: Child,
     /// How many children wait.
     waiting: usize,
@@ -58,19 +63,12 @@ trait Answers {
     /// Whether one hit is as good as any other.
     const ANY: bool;
 
-    /// How many there are.
-    fn len(&self) -> usize;
-
     /// The answer to a ray.
     fn put(&mut self, index: usize, hit: Option<Hit>);
 }
 
 impl Answers for &mut [Option<Hit>] {
     const ANY: bool = false;
-
-    fn len(&self) -> usize {
-        <[_]>::len(self)
-    }
 
     #[inline(always)]
     fn put(&mut self, index: usize, hit: Option<Hit>) {
@@ -82,10 +80,6 @@ impl Answers for &mut [Option<Hit>] {
 
 impl Answers for &mut [bool] {
     const ANY: bool = true;
-
-    fn len(&self) -> usize {
-        <[_]>::len(self)
-    }
 
     #[inline(always)]
     fn put(&mut self, index: usize, hit: Option<Hit>) {
@@ -131,7 +125,7 @@ impl Runner {
     fn new(ray: &Ray, root: Child, index: usize) -> Option<Self> {
         let ray = PreparedRay::here(ray)?;
         let (sides, best) = (Sides::of(&ray), end_of(&ray));
-        Some(Self { ray, sides, best, child: root, waiting: 0, index })
+        Some(Self { ray, sides, best, behind: beyond(best.t), child: root, waiting: 0, index })
     }
 
     fn hit(&self) -> Option<Hit> {
@@ -141,7 +135,7 @@ impl Runner {
     /// Goes on with what waits; whether there is anything.
     #[inline(always)]
     fn next(&mut self, waiting: &Waiting<'_>, count: usize) -> bool {
-        let next = waiting.pop(count, beyond(self.best.t));
+        let next = waiting.pop(count, self.behind);
         (self.child, self.waiting) = next.unwrap_or((self.child, 0));
         next.is_some()
     }
@@ -150,12 +144,16 @@ impl Runner {
     #[inline(always)]
     fn cross<S: Simd, A: Answers>(&mut self, simd: S, tree: &Tree, waiting: &mut Waiting<'_>) -> bool {
         let Some(node) = tree.nodes.get(self.child.0 as usize) else { return false };
-        let met = Slabs::new(simd, &self.ray, self.sides).meet(simd, node, limit(simd, self.best.t));
-        // The nearest last: by the order of the ray's octant, in which three bits of every four name a lane.
-        let order = u32x8::splat(simd, node.rows[ORDERS][self.sides.octant & 7]);
-        let lanes = simd.shrv_u32x8(order, u32x8::load_array(simd, [0, 4, 8, 12, 16, 20, 24, 28]));
-        let hits = simd.shrv_u32x8(u32x8::splat(simd, met.lanes), lanes & 7) & 1;
-        let lanes = lanes.compress(hits.simd_eq(1));
+        let met = Slabs::new(simd, &self.ray, self.sides).meet(simd, node, f32x8::splat(simd, self.behind));
+        let places = if A::ANY {
+            u32x8::load_array(simd, [0, 1, 2, 3, 4, 5, 6, 7])
+        } else {
+            // The nearest last: by the order of the ray's octant, in which every four bits name a lane.
+            let order = u32x8::splat(simd, node.rows[ORDERS][self.sides.octant & 7]);
+            simd.shrv_u32x8(order, u32x8::load_array(simd, [0, 4, 8, 12, 16, 20, 24, 28])) & 7
+        };
+        let met_there = simd.shrv_u32x8(u32x8::splat(simd, met.lanes), places) & 1;
+        let lanes = places.compress(met_there.simd_eq(1));
         let children = permute(simd, row(simd, &node.rows[CHILDREN]).bitcast(), lanes);
         let enters = permute(simd, met.enter.bitcast(), lanes);
         waiting.push(self.waiting, enters.bitcast(), children);
@@ -168,6 +166,7 @@ impl Runner {
         let Some(block) = tree.block(self.child) else { return false };
         let query = Query { simd, tree, ray: &self.ray, shear: ShearLanes::new(simd, &self.ray) };
         query.improve(block, self.child.count(), &mut self.best);
+        self.behind = beyond(self.best.t);
         !(A::ANY && self.best.primitive != u32::MAX) && self.next(waiting, self.waiting)
     }
 }
@@ -250,7 +249,6 @@ impl<S: Simd, A: Answers> Batch<'_, S, A> {
 /// Asks all rays, some at a time.
 #[inline(always)]
 fn run<S: Simd, A: Answers>(simd: S, tree: &Tree, rays: &[Ray], mut answers: A) {
-    let rays = rays.get(..answers.len()).unwrap_or(rays);
     let Some(root) = tree.root else {
         (0..rays.len()).for_each(|index| answers.put(index, None));
         return;
@@ -269,14 +267,48 @@ fn run<S: Simd, A: Answers>(simd: S, tree: &Tree, rays: &[Ray], mut answers: A) 
     Batch { simd, tree, queue, runners, room, enters, children, nodes, blocks }.run();
 }
 
+/// Pairs of rays that are looked at to find out whether neighbours go the same way.
+const PAIRS: usize = 16;
+
+/// Whether rays that follow each other go nearly the same way: then the processor guesses right what each will meet, and one
+/// after the other is faster, unless the tree is so large that they wait for memory.
+fn is_coherent(rays: &[Ray]) -> bool {
+    let step = (rays.len() / PAIRS).max(2);
+    let alike = rays.chunks_exact(step).filter(|rays| {
+        let &[a, b, ..] = rays else { return false };
+        let (a, b) = (a.direction, b.direction);
+        a.dot(b) > 0.0 && a.cross(b).length_squared() < 0.01 * a.length_squared() * b.length_squared()
+    });
+    alike.count() * 4 > rays.chunks_exact(step).len() * 3
+}
+
+/// Whether to ask one ray after the other.
+fn one_by_one(tree: &Tree, rays: &[Ray]) -> bool {
+    rays.len() < RUNNERS || (tree.bytes() < LARGE && is_coherent(rays))
+}
+
 /// The least hits of `rays`.
 #[inline(always)]
 pub(super) fn closest<S: Simd>(simd: S, tree: &Tree, rays: &[Ray], hits: &mut [Option<Hit>]) {
-    run(simd, tree, rays, hits);
+    let rays = rays.get(..hits.len()).unwrap_or(rays);
+    if one_by_one(tree, rays) {
+        for (ray, hit) in rays.iter().zip(hits) {
+            *hit = walk::closest(simd, tree, ray);
+        }
+    } else {
+        run(simd, tree, rays, hits);
+    }
 }
 
 /// Whether `rays` have hits.
 #[inline(always)]
 pub(super) fn any<S: Simd>(simd: S, tree: &Tree, rays: &[Ray], hits: &mut [bool]) {
-    run(simd, tree, rays, hits);
+    let rays = rays.get(..hits.len()).unwrap_or(rays);
+    if one_by_one(tree, rays) {
+        for (ray, hit) in rays.iter().zip(hits) {
+            *hit = walk::any(simd, tree, ray);
+        }
+    } else {
+        run(simd, tree, rays, hits);
+    }
 }

@@ -36,6 +36,11 @@ impl Default for Tree {
 pub(super) type Block = [u32; BLOCK_WORDS];
 
 impl Tree {
+    /// What rays walk through.
+    pub(super) fn bytes(&self) -> usize {
+        size_of_val(&self.nodes[..]) + size_of_val(&self.blocks[..]) + size_of_val(&self.masks[..])
+    }
+
     /// The block, and what lies behind it.
     #[inline(always)]
     pub(super) fn block(&self, child: Child) -> Option<&Block> {
@@ -62,11 +67,7 @@ impl Tree {
         let word = |row: usize| block.get(row * count + lane).copied().unwrap_or(0);
         let corner = |i: usize| [3 * i, 3 * i + 1, 3 * i + 2].map(|row| f32::from_bits(word(row))).into();
         let triangle = Triangle::new(corner(0), corner(1), corner(2));
-        // What is certainly hit may be proven at another scale, which the list's test tries before the slow tiers, too.
-        let crossing = match front {
-            Some(_) => triangle.intersect(ray, span.t_min(), span.t_max())?,
-            None => triangle.decide(ray, None)?,
-        };
+        let crossing = triangle.intersect_again(ray, (span.t_min(), span.t_max()), front)?;
         let number = word(TRIANGLE_WORDS - 1);
         let is_hit = (crossing.front || self.sides == Sides::Both) && self.is_seen(number, ray);
         if is_hit { span.accept(crossing.t, number) } else { None }

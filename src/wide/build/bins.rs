@@ -34,16 +34,16 @@ impl Grid {
     }
 }
 
-/// What has its middle in each of the bins.
+/// What has its middle in each of at most `N` bins.
 #[derive(Clone)]
-pub(super) struct Bins {
-    hulls: [[Hull; MOST]; 3],
-    counts: [[u32; MOST]; 3],
+pub(super) struct Bins<const N: usize> {
+    hulls: [[Hull; N]; 3],
+    counts: [[u32; N]; 3],
 }
 
-impl Bins {
+impl<const N: usize> Bins<N> {
     /// Of nothing.
-    pub(super) const EMPTY: Self = Self { hulls: [[Hull::EMPTY; MOST]; 3], counts: [[0; MOST]; 3] };
+    pub(super) const EMPTY: Self = Self { hulls: [[Hull::EMPTY; N]; 3], counts: [[0; N]; 3] };
 
     /// Of `items`, in the bins of `grid`.
     #[inline]
@@ -51,11 +51,10 @@ impl Bins {
         let mut bins = Self::EMPTY;
         for item in items {
             let places: [u32; 4] = bytemuck::must_cast(grid.rounded(item));
-            for axis in 0..3 {
-                let place = places[axis] as usize % MOST;
-                let hull = &mut bins.hulls[axis][place];
-                *hull = hull.union(item.hull());
-                bins.counts[axis][place] += 1;
+            for ((hulls, counts), place) in bins.hulls.iter_mut().zip(&mut bins.counts).zip(places) {
+                let place = place as usize % N;
+                hulls[place] = hulls[place].union(item.hull());
+                counts[place] += 1;
             }
         }
         bins
@@ -96,18 +95,18 @@ impl Bins {
             }
             let (hulls, counts) = (&self.hulls[axis], &self.counts[axis]);
             // What the parts behind each border cost; then the parts before it.
-            let mut behind = [(0.0, 0); MOST];
+            let mut behind = [(0.0, 0); N];
             let (mut hull, mut count) = (Hull::EMPTY, 0);
-            for bin in (1..grid.count).rev() {
-                hull = hull.union(hulls[bin % MOST]);
-                count += counts[bin % MOST];
-                behind[bin % MOST] = (rules.cost(hull, count), count);
+            for bin in (1..grid.count.min(N)).rev() {
+                hull = hull.union(hulls[bin % N]);
+                count += counts[bin % N];
+                behind[bin % N] = (rules.cost(hull, count), count);
             }
             let (mut hull, mut count) = (Hull::EMPTY, 0);
-            for border in 1..grid.count {
-                hull = hull.union(hulls[(border - 1) % MOST]);
-                count += counts[(border - 1) % MOST];
-                let (other, right) = behind[border % MOST];
+            for border in 1..grid.count.min(N) {
+                hull = hull.union(hulls[(border - 1) % N]);
+                count += counts[(border - 1) % N];
+                let (other, right) = behind[border % N];
                 let cost = rules.cost(hull, count) + other;
                 if cost < least && rules.allow(count, right) {
                     least = cost;

@@ -1,7 +1,7 @@
 use std::vec::Vec;
 
 use super::{
-    bins::{Bins, Cut, Rules},
+    bins::{self, Bins, Cut, Rules},
     partition::{partition, partition_parallel},
     spatial::Plane,
     sweep::Sorted,
@@ -12,7 +12,7 @@ use crate::primitives::Primitives;
 /// How to divide a set.
 pub(super) enum Division {
     /// At a border between bins; and what is in them by chunk, if the set is large.
-    Cut(Cut, Vec<Bins>),
+    Cut(Cut, Vec<Bins<{ bins::MOST }>>),
     /// Between neighbours along an axis.
     Sorted(Sorted),
     /// At a plane, which cuts what lies on both sides.

@@ -6,9 +6,10 @@ use rayon::prelude::*;
 
 use super::{
     Options,
-    bins::{Bins, Grid, Rules},
+    bins::{self, Bins, Grid, Rules},
     division::Division,
     hull::Hull,
+    item::Item,
     node::Node,
     partition::CHUNK,
     progress::Monitor,
@@ -22,7 +23,7 @@ use crate::primitives::Primitives;
 const ALONE: usize = 4096;
 
 /// Parts whose boxes have less than this in common, of the weight of everything, are not worth a look at cuts.
-const OVERLAP: f32 = 3.0e-4;
+const OVERLAP: f32 = 1.0e-3;
 
 /// What all tasks share.
 pub(super) struct Grower<'g, P: ?Sized> {
@@ -105,14 +106,16 @@ impl<P: Primitives + Sync + ?Sized> Grower<'_, P> {
             let sorted = Sorted::best(items, rules)?;
             return Some((sorted.cost, sorted.hulls, Division::Sorted(sorted)));
         }
-        let most = self.options.bins as usize;
-        let grid = Grid::new(task.extent.middles, (4 + items.len() / 16).min(most));
-        if items.len() <= SHARED {
-            let bins = Bins::of(items, &grid);
-            let cut = bins.cheapest(&grid, rules)?;
-            return Some((cut.cost, bins.parts(&cut), Division::Cut(cut, Vec::new())));
+        let count = (4 + items.len() / 16).min(self.options.bins as usize);
+        let grid = Grid::new(task.extent.middles, count);
+        // Small sets do without clearing many bins.
+        match items.len() {
+            0..=64 => return cut::<8>(items, &grid, rules),
+            65..=192 => return cut::<16>(items, &grid, rules),
+            193..=SHARED => return cut::<{ bins::MOST }>(items, &grid, rules),
+            _ => {}
         }
-        let chunks: Vec<Bins> = items.par_chunks(CHUNK).map(|chunk| Bins::of(chunk, &grid)).collect();
+        let chunks: Vec<Bins<{ bins::MOST }>> = items.par_chunks(CHUNK).map(|chunk| Bins::of(chunk, &grid)).collect();
         let bins = chunks.iter().fold(Bins::EMPTY, Bins::merge);
         let cut = bins.cheapest(&grid, rules)?;
         Some((cut.cost, bins.parts(&cut), Division::Cut(cut, chunks)))
@@ -138,4 +141,11 @@ impl<P: Primitives + Sync + ?Sized> Grower<'_, P> {
         };
         spread.cheapest(&cells, rules, least, items.len() as u32, room)
     }
+}
+
+/// The best border between `N` bins.
+fn cut<const N: usize>(items: &[Item], grid: &Grid, rules: &Rules) -> Option<(f32, [Hull; 2], Division)> {
+    let bins = Bins::<N>::of(items, grid);
+    let cut = bins.cheapest(grid, rules)?;
+    Some((cut.cost, bins.parts(&cut), Division::Cut(cut, Vec::new())))
 }

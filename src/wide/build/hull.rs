@@ -1,4 +1,4 @@
-use glam::Vec4;
+use glam::{Vec4, Vec4Swizzles};
 
 use crate::geometry::Aabb;
 
@@ -106,8 +106,8 @@ impl Hull {
     /// apart, too.
     #[inline(always)]
     pub(super) fn weight(self, scale: f32) -> f32 {
-        let size = self.size() * scale;
-        let (x, y, z) = (size.x, size.y, size.z);
-        x * (y + z + 1.0e-6) + (y * (z + 1.0e-6) + z * 1.0e-6)
+        let size = self.size() * scale + Vec4::splat(1.0e-6);
+        let faces = size * size.yzxw();
+        faces.x + faces.y + faces.z
     }
 }

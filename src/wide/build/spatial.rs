@@ -83,7 +83,7 @@ impl Spread {
                     hulls[begin] = hulls[begin].union(item.hull());
                     continue;
                 }
-                for bin in begin..=end {
+                for (bin, hull) in hulls.iter_mut().enumerate().take(end + 1).skip(begin) {
                     let mut part = item.hull();
                     if bin > begin {
                         part = part.above(axis, cells.border(axis, bin));
@@ -91,7 +91,7 @@ impl Spread {
                     if bin < end {
                         part = part.below(axis, cells.border(axis, bin + 1));
                     }
-                    hulls[bin] = hulls[bin].union(part);
+                    *hull = hull.union(part);
                 }
             }
         }

@@ -1,7 +1,7 @@
 use super::{bins::Rules, hull::Hull, item::Item};
 
 /// The most items that are sorted.
-pub(super) const MOST: usize = 64;
+pub(super) const MOST: usize = 16;
 
 /// Items by their middles along an axis.
 type Order = [u64; MOST];
@@ -34,9 +34,9 @@ impl Sorted {
             }
             let mut hull = Hull::EMPTY;
             let mut found = None;
-            for left in 1..items.len() {
+            for (left, behind) in behind.iter().enumerate().take(items.len()).skip(1) {
                 hull = hull.union(item(left - 1));
-                let cost = rules.cost(hull, left as u32) + behind[left].0;
+                let cost = rules.cost(hull, left as u32) + behind.0;
                 if cost < least && rules.allow(left as u32, (items.len() - left) as u32) {
                     least = cost;
                     found = Some((left, hull));
