@@ -138,20 +138,13 @@ impl Triangle {
 
     /// The last tiers; `front` is known if the filter has proven the hit.
     #[inline(always)]
-    fn decide(&self, ray: &PreparedRay, front: Option<bool>) -> Option<Crossing> {
+    pub(crate) fn decide(&self, ray: &PreparedRay, front: Option<bool>) -> Option<Crossing> {
         // Doubles are in hardware on hosts; on chips pairs of floats are several times faster than soft doubles.
         if cfg!(any(target_pointer_width = "64", target_arch = "x86", target_arch = "wasm32")) {
             shortcut::test(self, ray, front)
         } else {
             double::test(self, ray, front)
         }
-    }
-
-    /// As [`decide`](Self::decide), for what is only of interest within the limits; most of it lies outside.
-    #[cfg(feature = "std")]
-    #[inline(always)]
-    pub(crate) fn decide_within(&self, ray: &PreparedRay, limits: (f32, f32), front: Option<bool>) -> Option<Crossing> {
-        if front.is_some() && shortcut::is_outside(self, ray, limits) { None } else { self.decide(ray, front) }
     }
 
     /// The normal `(b - a) x (c - a)`, of twice the triangle's area in length, on the front side.

@@ -9,10 +9,11 @@ use glam::Vec3;
 
 use super::{MAX_DEPTH, Options, build};
 use crate::{
-    List, Mesh, PreparedRay, Primitives, Ray, Scene,
+    accel::List,
     error::BuildError,
-    geometry::Aabb,
-    primitives::{Hit, Span, from_fn},
+    geometry::{Aabb, PreparedRay, Ray},
+    primitives::{Hit, Mesh, Primitives, Span, from_fn},
+    scene::Scene,
     testing::Random,
     wide::binary::Binary,
 };
