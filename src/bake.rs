@@ -4,6 +4,8 @@ mod lattice;
 
 use alloc::{vec, vec::Vec};
 
+use glam::Vec3;
+
 use crate::{
     accel::{Plan, Structure},
     arena::{Arena, Full},
@@ -11,7 +13,7 @@ use crate::{
     error::BuildError,
     geometry::Sphere,
     instances::Instance,
-    primitives::{Indices, LatticeMesh, Mesh, Primitives},
+    primitives::{Indices, LatticeMesh, Mesh, Normals, Primitives},
     render::{Material, Numbers},
 };
 
@@ -115,6 +117,13 @@ impl Baker {
         self.section(Kind::LatticeVertices, words).indices(mesh.indices(), mesh.vertices().len())
     }
 
+    /// The same with the normals of a mesh's vertices, in 2 bytes each: see [`Normals`].
+    #[must_use]
+    pub fn normals(self, normals: &[Vec3]) -> Self {
+        let numbers = normals.iter().map(|&normal| Normals::packed(normal).into());
+        self.section(Kind::Normals, counted_halves(normals.len() as u32, numbers))
+    }
+
     fn indices(self, indices: Indices<'_>, vertices: usize) -> Self {
         let count = indices.len() as u32;
         let corners = (0..count).flat_map(|triangle| indices.get(triangle)).flatten();
@@ -202,6 +211,7 @@ impl Baker {
     ///
     /// If it has 2^32 words or more.
     #[must_use]
+    #[expect(clippy::expect_used, reason = "said above; what bakes is a host")]
     pub fn finish(self) -> Vec<u32> {
         let number = |n: usize| u32::try_from(n).expect("an asset has less than 2^32 words");
         let mut words = vec![MAGIC, BYTE_ORDER, VERSION, 0, 0, number(self.sections.len())];

@@ -129,6 +129,18 @@
 //! The minimum supported Rust version is 1.95; raising it is a minor release.
 #![no_std]
 #![forbid(unsafe_code)]
+// What panics on purpose. Whether an index can fail, clippy cannot tell; `examples/link` lets the linker prove it.
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::unwrap_used,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::unreachable,
+        clippy::todo,
+        clippy::unimplemented
+    )
+)]
 
 #[cfg(feature = "alloc")]
 extern crate alloc;
@@ -152,18 +164,26 @@ mod math;
 
 pub mod geometry;
 
+#[cfg_attr(not(test), deny(clippy::indexing_slicing))]
 pub mod arena;
+#[cfg_attr(not(test), deny(clippy::indexing_slicing))]
 pub mod asset;
+#[cfg_attr(not(test), deny(clippy::indexing_slicing))]
 pub mod primitives;
 
 pub mod accel;
 
+#[cfg_attr(not(test), deny(clippy::indexing_slicing))]
 pub mod instances;
+#[cfg_attr(not(test), deny(clippy::indexing_slicing))]
 pub mod lattice_scene;
+#[cfg_attr(not(test), deny(clippy::indexing_slicing))]
 pub mod query;
+#[cfg_attr(not(test), deny(clippy::indexing_slicing))]
 pub mod scene;
 
 pub mod render;
+#[cfg_attr(not(test), deny(clippy::indexing_slicing))]
 pub mod sensor;
 
 #[cfg(feature = "alloc")]
@@ -175,6 +195,7 @@ pub mod parallel;
 #[cfg(feature = "std")]
 pub mod wide;
 
+#[cfg_attr(not(test), deny(clippy::indexing_slicing))]
 pub mod error;
 
 #[cfg(test)]

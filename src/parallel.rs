@@ -6,8 +6,8 @@ use rayon::prelude::*;
 
 use crate::render::{Caster, Color, Renderer, Tile, TooShort};
 
-/// Rows of pixels that a thread takes at a time.
-const ROWS: u32 = 4;
+/// Rows of pixels that a thread takes at a time: as many as a patch of a tile has.
+const ROWS: u32 = 8;
 
 /// Computes the whole picture, row by row, into the beginning of `pixels`, on the threads of the current `rayon` pool.
 ///

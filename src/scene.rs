@@ -174,6 +174,40 @@ impl<A: Accelerator, P: Primitives> Scene<A, P> {
         self.any_hit_where(ray, |_| true)
     }
 
+    /// As [`any_hit`](Self::any_hit), trying first the primitive that `last` names, and naming there what was found: shadow
+    /// rays side by side are often stopped by the same one.
+    ///
+    /// ```
+    /// # use hitscan::{List, Mesh, Ray, Scene, glam::Vec3};
+    /// # let vertices = [Vec3::ZERO, Vec3::X, Vec3::Y];
+    /// # let mesh = Mesh::new(&vertices, &[[0_u16, 1, 2]])?;
+    /// # let scene = Scene::new(List::new(&mesh)?, &mesh)?;
+    /// let mut last = None;
+    /// for x in [0.1, 0.2, 0.3] {
+    ///     assert!(scene.any_hit_near(&Ray::new(Vec3::new(x, 0.2, -1.0), Vec3::Z), &mut last));
+    /// }
+    /// assert_eq!(last, Some(0));
+    /// # Ok::<(), hitscan::Error>(())
+    /// ```
+    #[must_use]
+    pub fn any_hit_near(&self, ray: &Ray, last: &mut Option<u32>) -> bool {
+        let prepared = ray.prepare();
+        let Some(ray) = prepared.as_ref() else { return false };
+        let any = Any::new(ray);
+        let stops = |index| self.intersect(index, ray, any.span(any.from())).is_some();
+        if last.is_some_and(|last| last < self.primitives.len() && stops(last)) {
+            return true;
+        }
+        let mut traversal = self.accelerator.traverse(ray);
+        while let Some(mut leaf) = traversal.next_leaf(ray, any.until().t) {
+            if let Some(index) = leaf.find(|&index| stops(index)) {
+                *last = Some(index);
+                return true;
+            }
+        }
+        false
+    }
+
     /// Whether the ray has a hit that `keep` accepts.
     #[must_use]
     pub fn any_hit_where(&self, ray: &Ray, keep: impl FnMut(&Hit) -> bool) -> bool {

@@ -14,7 +14,7 @@ use hitscan::{
     geometry::{Sphere, Transform},
     glam::{Mat3, Vec3},
     kdtree::Options,
-    primitives::{Reordered, Spheres},
+    primitives::{Reordered, Smooth, Spheres},
     query::Progress,
     render::{Material, Materials, Numbers},
 };
@@ -83,6 +83,47 @@ fn what_is_baked_is_read_back() {
     let materials: Materials = asset.read().unwrap();
     assert_eq!(materials.of(0), palette[0]);
     assert_eq!(materials.of(1), palette[1]);
+}
+
+#[test]
+fn normals_are_baked_and_shade() {
+    let vertices: Vec<Vec3> = (0..169).map(|i| Vec3::new((i % 13) as f32, (i / 13) as f32, 0.0)).collect();
+    let corner = |i: u16| i / 12 * 13 + i % 12;
+    let triangles: Vec<[u16; 3]> = (0..144).map(|i| [corner(i), corner(i) + 1, corner(i) + 13]).collect();
+    let mesh = Mesh::new(&vertices, &triangles[..]).unwrap();
+    let normals: Vec<Vec3> = vertices.iter().map(|at| (Vec3::Z * 20.0 + *at).normalize()).collect();
+    let baked = Baker::new().mesh(&mesh).normals(&normals).finish();
+    let flat = Baker::new().mesh(&mesh).finish();
+    let bytes = (baked.len() - flat.len()) * 4;
+    assert!(bytes <= vertices.len() * 2 + 4 + 16 + 16 + 8, "{bytes} for {} vertices", vertices.len());
+
+    let asset = Asset::from_words(&baked).unwrap();
+    let scene: Scene<List, Smooth> = Scene::new(List::new(&mesh).unwrap(), asset.read().unwrap()).unwrap();
+    let original = Scene::new(List::new(&mesh).unwrap(), Smooth::new(mesh, &normals)).unwrap();
+    let (mut random, mut blended) = (Random::new(8), 0);
+    for _ in 0..2_000 {
+        let inside = Vec3::new(random.unit() * 0.5, random.unit() * 0.5, 3.0);
+        let ray = Ray::new(random.pick(&vertices) + inside, Vec3::NEG_Z);
+        let hit = scene.closest_hit(&ray);
+        assert_eq!(hit, original.closest_hit(&ray));
+        let Some(hit) = hit else { continue };
+        let (packed, plain) = (scene.surface(&ray, &hit), original.surface(&ray, &hit));
+        assert!(packed.shading_normal.dot(plain.shading_normal) > 0.9998, "{packed:?} {plain:?}");
+        blended += u32::from(packed.shading_normal != packed.geometric_normal);
+    }
+    assert!(blended > 500, "{blended}");
+    assert!(Asset::from_words(&flat).unwrap().read::<Smooth>().is_err());
+
+    // Counts that are not those of the words.
+    let section = asset.sections().find(|section| section.kind == Kind::Normals).unwrap();
+    let start = baked.windows(section.words.len()).position(|words| words == section.words).unwrap();
+    for count in [0, section.words[0] - 2, section.words[0] + 3, u32::MAX] {
+        let mut words = baked.clone();
+        words[start] = count;
+        let words = sealed(words);
+        let error = Asset::from_words(&words).unwrap().read::<Smooth>().unwrap_err();
+        assert!(matches!(error, Error::Asset(AssetError::Shape { kind: Kind::Normals, .. })), "{count}: {error}");
+    }
 }
 
 fn tree_len(primitives: &impl hitscan::Primitives) -> u32 {

@@ -7,7 +7,7 @@ mod exact;
 
 use std::cell::Cell;
 
-use common::{FAMILIES, Random, adversarial_mesh, adversarial_ray, bits, boxed, coordinate, noise, point};
+use common::{FAMILIES, Random, adversarial_mesh, adversarial_ray, bits, boxed, coordinate, noise, point, rays};
 use exact::Exact;
 use hitscan::{
     Accelerator, Arena, KdTree, List, Mesh, PreparedRay, Primitives, Ray, Scene,
@@ -18,10 +18,6 @@ use hitscan::{
     kdtree::Options,
     query::Progress,
 };
-
-fn rays() -> usize {
-    std::env::var("HITSCAN_RAYS").ok().and_then(|n| n.parse().ok()).unwrap_or(1_000_000)
-}
 
 /// Whether the volume contains the point, both read as real numbers.
 fn contains(volume: &BoundingVolume, point: Vec3) -> bool {
@@ -316,7 +312,7 @@ fn bounded_structures_answer_as_the_list() {
     let mut random = Random::new(26);
     let mut memory = vec![0; 1 << 15];
     let (mut cast, mut hits, mut rejected) = (0, 0, [0; Bounding::ALL.len()]);
-    while cast < rays() {
+    while cast < rays(1_000_000) {
         let jumble = Jumble::new(&mut random);
         let (points, primitives) = (jumble.points(), jumble.primitives());
         let list = List::new(&primitives).unwrap();

@@ -3,22 +3,22 @@
 
 mod common;
 
-use common::{FAMILIES, Random, adversarial_mesh, adversarial_ray, bits, boxed, noise, plans};
+use common::{
+    FAMILIES, Random, adversarial_mesh, adversarial_ray, bits, boxed,
+    meshes::{self, Triangles},
+    noise, plans, rays, seed,
+};
 use hitscan::{
-    List, Mesh, Scene,
+    Arena, List, Mesh, Scene,
     accel::{Mailbox, Structure},
     from_fn,
     geometry::Aabb,
     glam::Vec3,
 };
 
-fn rays() -> usize {
-    std::env::var("HITSCAN_RAYS").ok().and_then(|n| n.parse().ok()).unwrap_or(1_000_000)
-}
-
 /// Casts rays at scenes of one kind of structure.
 fn compare(kind: usize, rays: usize) {
-    let mut random = Random::new(1 + kind as u64);
+    let mut random = Random::new(1 + kind as u64 + 100 * seed());
     let mut memory = vec![0; 1 << 16];
     let (mut cast, mut hits, mut words, mut scenes) = (0, 0, 0, 0);
     while cast < rays {
@@ -57,7 +57,46 @@ fn compare(kind: usize, rays: usize) {
 fn every_structure_answers_as_the_list() {
     std::thread::scope(|scope| {
         for kind in 0..plans::KINDS {
-            scope.spawn(move || compare(kind, rays() / 2));
+            scope.spawn(move || compare(kind, rays(6_000_000) / plans::KINDS));
         }
     });
+}
+
+/// Casts rays at a large mesh under every preset; only some of them at the list, too, which takes its time.
+fn compare_large(name: &str, (vertices, triangles): &Triangles, rays: usize) {
+    let mesh = Mesh::new(vertices, &triangles[..]).unwrap();
+    let list = Scene::new(List::new(&mesh).unwrap(), &mesh).unwrap();
+    let presets = plans::presets();
+    let mut memories: Vec<Vec<u32>> = presets.iter().map(|(_, plan)| vec![0; plan.words(triangles.len())]).collect();
+    let scenes: Vec<_> = presets
+        .iter()
+        .zip(&mut memories)
+        .map(|((_, plan), memory)| Structure::build(&mesh, &mut Arena::new(memory), plan).unwrap())
+        .map(|structure| Scene::new(structure, &mesh).unwrap())
+        .collect();
+    let mut random = Random::new(vertices.len() as u64 + 1000 * seed());
+    let mut hits = 0;
+    for cast in 0..rays {
+        let ray = adversarial_ray(&mut random, 2, vertices);
+        let expected = if cast % 200 == 0 { list.closest_hit(&ray) } else { scenes[0].closest_hit(&ray) };
+        hits += usize::from(expected.is_some());
+        for (scene, (preset, _)) in scenes.iter().zip(&presets) {
+            assert_eq!(bits(scene.closest_hit(&ray)), bits(expected), "{name} {preset} {ray:?}");
+        }
+    }
+    assert!(hits * 4 > rays, "{name}: {hits} of {rays}");
+}
+
+#[test]
+fn every_preset_answers_as_the_list_over_large_scenes() {
+    let large = [
+        ("sheet", meshes::sheet(60)),
+        ("random", meshes::random(6000, 0.2)),
+        ("fan", meshes::fan(500)),
+        ("hair", meshes::hair(500)),
+        ("identical", meshes::identical(500)),
+        ("shrinking", meshes::shrinking(1000)),
+    ];
+    let each = rays(12_000) / large.len();
+    large.iter().for_each(|(name, triangles)| compare_large(name, triangles, each));
 }

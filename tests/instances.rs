@@ -6,7 +6,7 @@ mod common;
 #[path = "instances/deep.rs"]
 mod deep;
 
-use common::{Random, adversarial_mesh, adversarial_ray, bits, boxed, noise, point};
+use common::{Random, adversarial_mesh, adversarial_ray, bits, boxed, noise, point, rays, seed};
 use hitscan::{
     Accelerator, Arena, Hit, Instance, Instances, KdTree, List, Mesh, PreparedRay, Primitives, Ray, Scene, Span,
     from_fn,
@@ -139,8 +139,8 @@ fn content<'a, A: Accelerator, P: Primitives>(
 
 #[test]
 fn every_query_at_every_depth_answers_as_a_gather() {
-    let rays = std::env::var("HITSCAN_RAYS").ok().and_then(|n| n.parse().ok()).unwrap_or(60_000);
-    let mut random = Random::new(11);
+    let rays = rays(60_000);
+    let mut random = Random::new(11 + 100 * seed());
     let mut memories: [Vec<u32>; 4] = [(); 4].map(|()| vec![0; 1 << 15]);
     let (mut cast, mut hits) = (0, 0);
     while cast < rays {

@@ -4,10 +4,11 @@
 
 mod common;
 
-use common::{Random, bits, meshes, plans};
+use common::{Random, bits, meshes, plans, rays, seed};
 use hitscan::{
     CompactKdTree, DualSplit, LatticeMesh, LatticeScene, List, Mesh, Ray, Scene,
     accel::{LatticeAccelerator, Plan},
+    asset::{Asset, AssetError, Kind},
     bake::{self, OnLattice},
     dualsplit,
     geometry::{Aabb, LatticeSpace},
@@ -15,11 +16,8 @@ use hitscan::{
     kdtree,
     lattice_scene::LatticeError,
     primitives::{Order, Renumbering, Reordered, Sides},
+    scene::Mismatch,
 };
-
-fn rays() -> usize {
-    std::env::var("HITSCAN_RAYS").ok().and_then(|n| n.parse().ok()).unwrap_or(1_000_000)
-}
 
 /// Vertices on few planes, close together, all over the lattice, or of large and small triangles at once.
 fn numbers(random: &mut Random, count: usize) -> Vec<[u16; 3]> {
@@ -111,10 +109,10 @@ fn compare<A: LatticeAccelerator>(
 #[test]
 fn every_structure_answers_as_the_list() {
     for kind in [3, 4] {
-        let mut random = Random::new(kind as u64);
+        let mut random = Random::new(kind as u64 + 100 * seed());
         let mut memory = vec![0; 1 << 16];
         let mut count = Count::default();
-        while count.cast < rays() / 2 {
+        while count.cast < rays(1_000_000) / 2 {
             let vertices = 3 + random.below(40);
             let numbers = numbers(&mut random, vertices);
             let triangles: Vec<[u16; 3]> =
@@ -179,8 +177,8 @@ fn closed_meshes_do_not_leak() {
     let words = bake::build(&mesh, &Plan::DualSplit(dualsplit::Options::fast())).unwrap();
     let scene = LatticeScene::new(DualSplit::open(&words).unwrap(), &mesh).unwrap();
     let positions: Vec<Vec3> = mesh.positions().collect();
-    let mut random = Random::new(3);
-    for _ in 0..rays() / 2 {
+    let mut random = Random::new(3 + 100 * seed());
+    for _ in 0..rays(1_000_000) / 2 {
         // From inside, most at corners and along edges.
         let origin = Vec3::from_array([0; 3].map(|_| random.unit() - 0.5)) * 0.8;
         let corners = mesh.indices().get(random.below(triangles.len()) as u32).unwrap();
@@ -286,8 +284,6 @@ fn ties_are_decided_by_the_owners_numbers() {
 fn what_is_not_on_one_lattice_is_refused() {
     let frame = Aabb::new(Vec3::ZERO, Vec3::ONE);
     let numbers = [[0, 0, 0], [60_000, 0, 30_000], [0, 60_000, 30_000], [5, 5, 65_535_u16]];
-    let mesh = |frame: &Aabb, triangle: [u16; 3]| LatticeMesh::new(frame, &numbers, &[triangle]).map(|_| ()).unwrap();
-    mesh(&frame, [0, 1, 2]);
     let error = |frame: &Aabb, triangles: &[[u16; 3]], over: &Aabb| {
         let mesh = LatticeMesh::new(frame, &numbers, triangles).unwrap();
         let other = LatticeMesh::new(over, &numbers, triangles).unwrap();
@@ -302,8 +298,32 @@ fn what_is_not_on_one_lattice_is_refused() {
     assert_eq!(error(&uneven, &[[0, 1, 3]], &uneven), Some(LatticeError::Frame));
     let far = Aabb::new(Vec3::splat(1000.0), Vec3::splat(1001.0));
     assert_eq!(error(&far, &[[0, 1, 2]], &far), Some(LatticeError::TooFine));
+    let (one, two) = ([[0_u16, 1, 2]], [[0_u16, 1, 2]; 2]);
+    let (one, two) =
+        (LatticeMesh::new(&frame, &numbers, &one).unwrap(), LatticeMesh::new(&frame, &numbers, &two).unwrap());
+    let mismatch = LatticeError::Mismatch(Mismatch { structure: 1, primitives: 2 });
+    assert_eq!(LatticeScene::new(List::new(&one).unwrap(), two).map(|_| ()), Err(mismatch));
     let flat = Aabb::new(Vec3::ZERO, Vec3::new(1.0, 0.0, 1.0));
     assert!(LatticeSpace::over(&flat).is_none() && LatticeSpace::over(&Aabb::EMPTY).is_none());
+}
+
+#[test]
+fn assets_give_the_scene_that_was_baked() {
+    let vertices = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
+    let mesh = Mesh::new(&vertices, &[[0_u16, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]]).unwrap();
+    let on_lattice = bake::lattice(&mesh);
+    let mesh = on_lattice.mesh(mesh.indices()).unwrap();
+    let words = bake::build(&mesh, &Plan::CompactKdTree(kdtree::Options::small())).unwrap();
+    let tree = CompactKdTree::open(&words).unwrap();
+    let baked = bake::Baker::new().lattice_mesh(&mesh).structure(tree).finish();
+    let asset = Asset::open(bytemuck::cast_slice(&baked)).unwrap();
+    let scene = asset.lattice_scene::<CompactKdTree<'_>, LatticeMesh<'_>>().unwrap();
+    let direct = LatticeScene::new(tree, mesh).unwrap();
+    let ray = Ray::new(Vec3::ONE, Vec3::NEG_ONE);
+    assert!(direct.closest_hit(&ray).is_some());
+    assert_eq!(bits(scene.closest_hit(&ray)), bits(direct.closest_hit(&ray)));
+    let other = asset.lattice_scene::<DualSplit<'_>, LatticeMesh<'_>>();
+    assert_eq!(other.map(|_| ()), Err(AssetError::Missing { kind: Kind::DualSplit }.into()));
 }
 
 #[test]

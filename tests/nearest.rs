@@ -5,7 +5,7 @@ mod common;
 
 use std::cell::Cell as Counter;
 
-use common::{FAMILIES, Random, adversarial_mesh, boxed, coordinate, noise, point};
+use common::{FAMILIES, Random, adversarial_mesh, boxed, coordinate, noise, point, rays};
 use hitscan::{
     Accelerator, Arena, Hit, Instance, Instances, List, Mesh, PreparedRay, Primitives, Ray, Scene, Span,
     accel::{Cell, Hierarchy, Inside, Plan, Structure},
@@ -103,7 +103,7 @@ fn hold<P: Proximity>(
 }
 
 fn rounds() -> usize {
-    std::env::var("HITSCAN_RAYS").map_or(600, |n| n.parse::<usize>().unwrap() / 100)
+    rays(60_000) / 100
 }
 
 fn ball(random: &mut Random, family: usize) -> Sphere {

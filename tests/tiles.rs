@@ -12,7 +12,7 @@ use hitscan::{
     geometry::{Aabb, Bundle},
     glam::Vec3,
     primitives::{Primitives, from_fn},
-    render::{Camera, Renderer, Tile},
+    render::{Camera, Light, Renderer, Tile},
 };
 
 /// Cameras inside, near and far, along axes and not, with and without perspective, and some that see nothing.
@@ -191,6 +191,39 @@ fn entries_are_few_and_small() {
     }
 }
 
+/// Tiles beside and between the strands of a coil are told to be empty, wherever planes lie.
+#[test]
+fn tiles_that_see_nothing_are_empty() {
+    let point = |along: usize, around: usize| {
+        let (along, around) = (along as f32 * 0.08, around as f32 * std::f32::consts::TAU / 6.0);
+        let distance = 1.0 + 0.1 * around.cos();
+        Vec3::new(distance * along.cos(), 0.12 * along + 0.1 * around.sin(), distance * along.sin())
+    };
+    let vertices: Vec<Vec3> = (0..200 * 6).map(|i| point(i / 6, i % 6)).collect();
+    let triangles: Vec<[u16; 3]> = (0..199 * 6)
+        .flat_map(|i| {
+            let (a, b) = (i, i / 6 * 6 + (i + 1) % 6);
+            [[a, b, a + 6], [b, b + 6, a + 6]]
+        })
+        .collect();
+    let mesh = Mesh::new(&vertices, triangles.as_slice()).unwrap();
+    let words = bake::build(&mesh, &Plan::KdTree(Default::default())).unwrap();
+    let scene = Scene::new(Structure::open(hitscan::asset::Kind::KdTree, &words).unwrap(), &mesh).unwrap();
+    let camera = Camera::framing(&scene.bounds(), Vec3::new(0.1, 0.2, 1.0), Vec3::Y);
+    let (mut empty, mut told) = (0, 0);
+    for tile in Renderer::new(&scene, camera, 128, 128).tiles(4, 4) {
+        let sees_something = tile.pixels().any(|(x, y)| {
+            let mut points = (0..16).map(|i| (x as f32 + (i % 4) as f32 / 3.0, y as f32 + (i / 4) as f32 / 3.0));
+            points.any(|(x, y)| scene.any_hit(&camera.ray(x, y, 128, 128)))
+        });
+        let entries = scene.enter(&camera.bundle(&tile, 128, 128).unwrap());
+        assert!(!(sees_something && entries.is_empty()), "{tile:?}");
+        empty += u32::from(!sees_something);
+        told += u32::from(entries.is_empty());
+    }
+    assert!(empty > 300 && told * 10 > empty * 9, "of {empty} empty tiles {told} are told");
+}
+
 #[test]
 fn pictures_in_parts_are_the_picture() {
     let mut random = Random::new(44);
@@ -200,7 +233,11 @@ fn pictures_in_parts_are_the_picture() {
     let scene = Scene::new(Structure::open(hitscan::asset::Kind::KdTree, &words).unwrap(), &mesh).unwrap();
     for (width, height) in [(1, 1), (9, 70), (130, 67), (64, 64), (0, 5), (5, 0)] {
         let camera = Camera::framing(&scene.bounds(), Vec3::new(0.3, 0.2, 1.0), Vec3::Y);
-        let renderer = Renderer::new(&scene, camera, width, height).with_samples(2).with_bounces(1);
+        // One light more than patches remember occluders of.
+        let lights = [Vec3::X, Vec3::Y, Vec3::NEG_X, Vec3::NEG_Z, Vec3::NEG_ONE]
+            .map(|direction| Light::directional(direction + Vec3::splat(0.1), Vec3::ONE));
+        let renderer =
+            Renderer::new(&scene, camera, width, height).with_samples(2).with_bounces(1).with_lights(&lights);
         let plain: Vec<Vec3> = Tile { x: 0, y: 0, width, height }.pixels().map(|(x, y)| renderer.pixel(x, y)).collect();
 
         let mut filled = vec![Vec3::NAN; plain.len()];
@@ -254,4 +291,103 @@ fn tiles_that_show_nothing_of_a_change_stay_as_they_are() {
         assert_eq!(before, after, "{tile:?}");
     }
     assert!(dirty < 20 && clean > 100, "{dirty} {clean}");
+}
+
+/// Tiles at the end of all numbers, larger than the picture, or without pixels: what is drawn is the picture's, and nothing
+/// panics.
+#[test]
+fn tiles_of_any_numbers_are_filled() {
+    let mesh = Mesh::new(&[Vec3::ZERO, Vec3::X, Vec3::Y], &[[0_u16, 1, 2]]).unwrap();
+    let scene = Scene::new(List::new(&mesh).unwrap(), mesh).unwrap();
+    let camera = Camera::framing(&scene.bounds(), Vec3::Z, Vec3::Y);
+    let renderer = Renderer::new(&scene, camera, 16, 8);
+    for (x, width) in [(u32::MAX, 20), (u32::MAX - 5, 20), (0, 0), (3, 20), (1 << 31, 9)] {
+        for (y, height) in [(u32::MAX, 9), (u32::MAX - 12, 20), (0, 0), (5, 9)] {
+            let tile = Tile { x, y, width, height };
+            let mut pixels = vec![Vec3::NAN; tile.area()];
+            renderer.fill(tile, &mut pixels).unwrap();
+            for (index, light) in pixels.iter().enumerate() {
+                let at = (x.checked_add(index as u32 % width), y.checked_add(index as u32 / width));
+                // What has no number has no colour, either.
+                let expected = match at {
+                    (Some(x), Some(y)) if x < u32::MAX && y < u32::MAX => renderer.pixel(x, y),
+                    _ => Vec3::NAN,
+                };
+                assert_eq!(
+                    light.to_array().map(f32::to_bits),
+                    expected.to_array().map(f32::to_bits),
+                    "{tile:?} {at:?}"
+                );
+            }
+        }
+    }
+}
+
+/// What is tried first, even if it is no primitive, changes no answer, and what stops a ray is remembered.
+#[test]
+fn shadows_are_the_same_whatever_is_tried_first() {
+    let mut random = Random::new(46);
+    let (mut stopped, mut again) = (0, 0);
+    for round in 0..60 {
+        let family = round % common::FAMILIES;
+        let (vertices, triangles) = adversarial_mesh(&mut random, family, 60);
+        let mesh = Mesh::new(&vertices, triangles.as_slice()).unwrap();
+        for (name, plan) in plans::presets() {
+            let words = bake::build(&mesh, &plan).unwrap();
+            let scene = Scene::new(Structure::open(plan.kind().unwrap(), &words).unwrap(), &mesh).unwrap();
+            for _ in 0..20 {
+                let ray =
+                    Ray::between(point(&mut random, family), random.pick(&vertices)).up_to(random.pick(&[0.5, 2.0]));
+                let first = random.pick(&[None, Some(0), Some(31), Some(triangles.len() as u32), Some(u32::MAX)]);
+                let mut last = first;
+                let is_stopped = scene.any_hit(&ray);
+                assert_eq!(scene.any_hit_near(&ray, &mut last), is_stopped, "{name}: {ray:?} {first:?}");
+                assert!(is_stopped || last == first);
+                if is_stopped {
+                    stopped += 1;
+                    let found = last;
+                    assert!(scene.any_hit_near(&ray, &mut last));
+                    again += u32::from(last == found);
+                }
+            }
+        }
+    }
+    assert!(stopped > 1_000 && again == stopped, "{stopped} {again}");
+}
+
+/// What is refined is what differs from a neighbour in the rough picture, once, with the light of all samples.
+#[test]
+fn edges_alone_are_refined() {
+    let (vertices, triangles) = common::meshes::random(12, 0.6);
+    let mesh = Mesh::new(&vertices, triangles.as_slice()).unwrap();
+    let scene = Scene::new(List::new(&mesh).unwrap(), &mesh).unwrap();
+    let camera = Camera::framing(&scene.bounds(), Vec3::new(0.3, 0.2, 1.0), Vec3::Y);
+    let renderer = Renderer::new(&scene, camera, 50, 37);
+    for tile in [Tile { x: 0, y: 0, width: 50, height: 37 }, Tile { x: 0, y: 9, width: 50, height: 11 }] {
+        let mut rough = vec![[0_u8; 3]; tile.area()];
+        renderer.fill(tile, &mut rough).unwrap();
+        let at = |x: u32, y: u32| {
+            let inside = x < tile.width && y >= tile.y && y < tile.y + tile.height;
+            inside.then(|| rough[((y - tile.y) * tile.width + x) as usize])
+        };
+        let differ = |a: &[u8; 3], b: &[u8; 3]| a[0].abs_diff(b[0]) > 8;
+        let fine = renderer.with_samples(3);
+        let mut left: Vec<_> = tile
+            .pixels()
+            .filter(|&(x, y)| {
+                let beside = [(x.wrapping_sub(1), y), (x + 1, y), (x, y.wrapping_sub(1)), (x, y + 1)];
+                beside.into_iter().any(|(u, v)| at(u, v).is_some_and(|other| differ(&at(x, y).unwrap(), &other)))
+            })
+            .collect();
+        assert!(left.len() > 50 && left.len() * 3 < tile.area(), "{} of {}", left.len(), tile.area());
+        for ((x, y), light) in fine.refined(tile, &rough, differ) {
+            let place = left.iter().position(|&pixel| pixel == (x, y)).expect("an edge, once");
+            left.swap_remove(place);
+            assert_eq!(light, fine.pixel(x, y));
+        }
+        assert!(left.is_empty());
+        // Of a picture that is cut short, what is there.
+        assert!(fine.refined(tile, &rough[..70], differ).all(|((x, y), _)| (y - tile.y) * tile.width + x < 70));
+        assert_eq!(fine.refined(tile, &[0_u8; 0], |_, _| true).count(), 0);
+    }
 }

@@ -19,10 +19,6 @@ fn build<P: Triangles + Sync>(triangles: P) -> WideBvh<P> {
     WideBvh::new(triangles, &Options::default()).unwrap()
 }
 
-fn rays() -> usize {
-    std::env::var("HITSCAN_RAYS").ok().and_then(|n| n.parse().ok()).unwrap_or(1_000_000)
-}
-
 /// Casts rays with instructions of one kind.
 fn compare(simd: Simd, seed: u64, rays: usize) {
     let mut random = Random::new(seed);
@@ -70,8 +66,8 @@ fn the_wide_tree_answers_as_the_list() {
     let kinds: Vec<Simd> = Simd::available().collect();
     std::thread::scope(|scope| {
         for (seed, &simd) in kinds.iter().enumerate() {
-            let share = rays() / kinds.len();
-            scope.spawn(move || compare(simd, seed as u64, share));
+            let share = common::rays(1_000_000) / kinds.len();
+            scope.spawn(move || compare(simd, seed as u64 + 100 * common::seed(), share));
         }
     });
 }

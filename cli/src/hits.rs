@@ -25,6 +25,11 @@ impl HitRecord {
     pub fn is_miss(self) -> bool {
         self.primitive == u32::MAX
     }
+
+    /// As it stands in a file.
+    pub fn to_bytes(self) -> [u8; 8] {
+        (u64::from(self.primitive) << 32 | u64::from(self.t.to_bits())).to_le_bytes()
+    }
 }
 
 /// Reads a hit file; `-` is standard input.
@@ -39,12 +44,7 @@ pub fn read_hits(path: &Path) -> Result<Vec<HitRecord>, InputError> {
 
 /// Writes a hit file; `-` is standard output.
 pub fn write_hits(path: &Path, hits: &[HitRecord]) -> Result<(), OutputError> {
-    write_atomically(path, |file| {
-        hits.iter().try_for_each(|hit| {
-            file.write_all(&hit.t.to_le_bytes())?;
-            file.write_all(&hit.primitive.to_le_bytes())
-        })
-    })
+    write_atomically(path, |file| hits.iter().try_for_each(|hit| file.write_all(&hit.to_bytes())))
 }
 
 /// Writes the hits as lines of `columns`, what `cells` makes of each ray's answer; `-` is standard output.

@@ -5,6 +5,8 @@ use std::fs::{self, File, Permissions};
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
+use crate::interrupt;
+
 /// Why an output could not be written, printed as `PATH: WHAT: HOW TO MEND IT`.
 #[derive(Debug)]
 pub struct OutputError {
@@ -87,6 +89,7 @@ fn write_file(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>)
         temporary.permissions(permissions);
     }
     let mut file = temporary.tempfile_in(folder.unwrap_or(Path::new(".")))?;
+    interrupt::forget_if_interrupted(file.path());
     through(file.as_file_mut(), write)?.sync_all()?;
     file.persist(&target)?;
     Ok(())

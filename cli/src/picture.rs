@@ -8,11 +8,29 @@ use std::path::Path;
 use crate::output::{OutputError, write_atomically};
 
 /// Writes `pixels` as a PNG; there must be `width * height` of them and one at least.
+///
+/// # Errors
+///
+/// What the system says of the file.
 pub fn write_png(path: &Path, width: u32, height: u32, pixels: &[[u8; 3]]) -> Result<(), OutputError> {
+    write_png_with(path, width, height, pixels, &[])
+}
+
+/// As [`write_png`], with texts under keywords.
+pub fn write_png_with(
+    path: &Path,
+    width: u32,
+    height: u32,
+    pixels: &[[u8; 3]],
+    texts: &[(&str, String)],
+) -> Result<(), OutputError> {
     write_atomically(path, |file| {
         let mut encoder = png::Encoder::new(file, width, height);
         encoder.set_color(png::ColorType::Rgb);
         encoder.set_depth(png::BitDepth::Eight);
+        for (keyword, text) in texts {
+            encoder.add_text_chunk((*keyword).to_owned(), text.clone()).map_err(to_io)?;
+        }
         let mut writer = encoder.write_header().map_err(to_io)?;
         writer.write_image_data(pixels.as_flattened()).map_err(to_io)?;
         writer.finish().map_err(to_io)
@@ -25,6 +43,35 @@ fn to_io(error: png::EncodingError) -> io::Error {
         png::EncodingError::IoError(error) => error,
         error => io::Error::other(error),
     }
+}
+
+/// What a PNG holds.
+#[derive(Debug)]
+pub struct Image {
+    /// Pixels in a row.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// The pixels.
+    pub pixels: Vec<[u8; 3]>,
+    /// Texts under keywords.
+    pub texts: Vec<(String, String)>,
+}
+
+/// Reads a PNG of 8-bit RGB pixels.
+pub fn read_png(file: impl io::BufRead + io::Seek) -> Result<Image, png::DecodingError> {
+    let mut reader = png::Decoder::new(file).read_info()?;
+    let other = || png::DecodingError::IoError(io::Error::other("its pixels are not 8-bit RGB"));
+    let size = reader.output_buffer_size().ok_or_else(other)?;
+    let mut bytes = vec![0; size];
+    let frame = reader.next_frame(&mut bytes)?;
+    if (frame.color_type, frame.bit_depth) != (png::ColorType::Rgb, png::BitDepth::Eight) {
+        return Err(other());
+    }
+    reader.finish()?;
+    let texts = reader.info().uncompressed_latin1_text.iter();
+    let texts = texts.map(|chunk| (chunk.keyword.clone(), chunk.text.clone())).collect();
+    Ok(Image { width: frame.width, height: frame.height, pixels: bytes.as_chunks().0.to_vec(), texts })
 }
 
 /// Draws `pixels` with half blocks of 24-bit colour, two pixels to a character, shrunk to `columns`

@@ -39,15 +39,20 @@ impl From<&RayRecord> for Ray {
 
 /// Reads a ray file, with `interval` one whose rays carry t_min and t_max; `-` is standard input.
 pub fn read_rays(path: &Path, interval: bool) -> Result<Vec<RayRecord>, InputError> {
+    let bytes = input::read_records(path, size(interval), "ray")?;
+    Ok(decode(&bytes, interval))
+}
+
+/// The rays that stand in some bytes; what is left over at the end is none.
+pub fn decode(bytes: &[u8], interval: bool) -> Vec<RayRecord> {
     let record = size(interval);
-    let bytes = input::read_records(path, record, "ray")?;
     let rays = bytes.chunks_exact(record).map(|bytes| {
         let mut floats = bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]]));
         let mut next = || floats.next().unwrap_or_default();
         let ray = RayRecord::new([next(), next(), next()], [next(), next(), next()]);
         if interval { RayRecord { t_min: next(), t_max: next(), ..ray } } else { ray }
     });
-    Ok(rays.collect())
+    rays.collect()
 }
 
 #[cfg(test)]
@@ -63,7 +68,7 @@ pub fn write_rays(path: &Path, rays: &[RayRecord], interval: bool) -> Result<(),
 }
 
 /// Bytes of one ray in a file.
-fn size(interval: bool) -> usize {
+pub fn size(interval: bool) -> usize {
     if interval { 32 } else { 24 }
 }
 

@@ -17,7 +17,7 @@ pub struct Entry {
 /// The parts of a structure that the rays of a [`Bundle`] can enter, the nearest first.
 ///
 /// Reshetov, Soupikov and Hurley, *Multi-level ray tracing algorithm*, 2005, with some entries in the place of one.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Entries(heapless::Vec<Entry, MOST>);
 
 /// How many entries there may be.
@@ -30,9 +30,7 @@ impl Entries {
     /// One: everything, for rays of which nothing is known.
     #[must_use]
     pub fn everything(bounds: Aabb) -> Self {
-        let mut entries = Self(heapless::Vec::new());
-        entries.insert(Entry { bounds, node: 0, enter: f32::NEG_INFINITY });
-        entries
+        Entry { bounds, node: 0, enter: f32::NEG_INFINITY }.into()
     }
 
     /// Everything, or nothing if no ray meets its box.
@@ -40,7 +38,7 @@ impl Entries {
     pub fn whole(bounds: Aabb, bundle: &Bundle) -> Self {
         match bundle.entry(&bounds) {
             Some(_) => Self::everything(bounds),
-            None => Self(heapless::Vec::new()),
+            None => Self::default(),
         }
     }
 
@@ -49,14 +47,14 @@ impl Entries {
     /// Level by level: what no ray meets goes, what they meet takes its parent's place. Where there is no room for both
     /// children, their parent stays, so that nothing is ever left out.
     pub(crate) fn find<H: Hierarchy<Node = u32>>(structure: &H, bundle: &Bundle, most: usize) -> Self {
-        let mut entries = Self(heapless::Vec::new());
+        let mut entries = Self::default();
         if let Some(Cell { bounds, node }) = structure.root()
             && let Some(enter) = bundle.entry(&bounds)
         {
             entries.insert(Entry { bounds, node, enter });
         }
         for _ in 0..LEVELS {
-            let (mut below, mut left, mut changed) = (Self(heapless::Vec::new()), entries.0.len(), false);
+            let (mut below, mut left, mut changed) = (Self::default(), entries.0.len(), false);
             for entry in entries.iter() {
                 left -= 1;
                 let children = match structure.open(&Cell { bounds: entry.bounds, node: entry.node }) {
@@ -106,5 +104,14 @@ impl Entries {
             }
         }
         let _ = self.0.push(entry);
+    }
+}
+
+/// One.
+impl From<Entry> for Entries {
+    fn from(entry: Entry) -> Self {
+        let mut entries = Self::default();
+        entries.insert(entry);
+        entries
     }
 }

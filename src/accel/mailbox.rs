@@ -6,8 +6,8 @@ const RECENT: usize = 32;
 
 /// A structure whose walks remember the primitives tested last and leave them out.
 ///
-/// It spares a seventh of the tests in a grid and a twentieth in a kD-tree, which pays where a test is dear: shapes of your
-/// own, triangles without an FPU. With one, the tests of triangles that it spares cost less than looking them up.
+/// It spares a seventh to a fifth of the tests in a grid and a twentieth in a kD-tree, which pays where a test is dear: shapes
+/// of your own, triangles without an FPU. With one, the tests of triangles that it spares cost less than looking them up.
 /// Unlike the mailboxes of Amanatides and Woo, *A fast voxel traversal algorithm for ray tracing*, 1987, it needs no memory
 /// per primitive: the numbers are part of the walk.
 ///

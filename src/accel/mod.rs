@@ -11,6 +11,7 @@ mod entry;
 pub mod grid;
 mod hierarchy;
 pub mod kdtree;
+mod lattice_segment;
 mod leaf;
 mod list;
 mod mailbox;

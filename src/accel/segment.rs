@@ -1,5 +1,6 @@
+use super::Entry;
 use crate::{
-    geometry::{Aabb, PreparedRay, beyond},
+    geometry::{Aabb, PreparedRay, beyond, slack},
     math::{greatest, least},
 };
 
@@ -14,12 +15,6 @@ pub(crate) struct Segment {
 }
 
 impl Segment {
-    /// The part of the ray in the bounds of everything, for the first node.
-    #[inline(always)]
-    pub(crate) fn whole(bounds: &Aabb, ray: &PreparedRay, slack: f32) -> Option<Self> {
-        Self::within(bounds, 0, ray, slack)
-    }
-
     /// The part of the ray in the bounds of a node where a walk begins; exits are late by `slack`, as in all of the walk.
     #[inline(always)]
     pub(crate) fn within(bounds: &Aabb, node: u32, ray: &PreparedRay, slack: f32) -> Option<Self> {
@@ -31,6 +26,12 @@ impl Segment {
             exit = least((far - view.origin) * view.exit + slack, exit);
         }
         Self::between(enter, exit).map(|segment| Self { node, ..segment })
+    }
+
+    /// The part of the ray where one of a bundle that was looked into beforehand begins.
+    #[inline(always)]
+    pub(crate) fn of_entry(entry: &Entry, ray: &PreparedRay) -> Option<Self> {
+        Self::within(&entry.bounds, entry.node, ray, slack(ray.ray().t_min))
     }
 
     /// From `enter` to `exit`, for the first node; none if it ends before it begins.

@@ -131,7 +131,7 @@ impl Slope {
         let min = Vec3::new(at(Axis::X, 0), at(Axis::Y, 0), at(Axis::Z, 0));
         let last = |axis| at(axis, lattice.last(axis));
         let max = Vec3::new(last(Axis::X), last(Axis::Y), last(Axis::Z));
-        let Some(whole) = Segment::whole(&Aabb::new(min, max), ray, slack) else { return [Self::NEVER; 3] };
+        let Some(whole) = Segment::within(&Aabb::new(min, max), 0, ray, slack) else { return [Self::NEVER; 3] };
         let end = greatest(whole.enter.abs(), whole.exit.abs());
         Axis::ALL.map(|axis| {
             let (slope, largest) = Self::along(axis, ray, lattice, thickness, slack);
@@ -224,7 +224,7 @@ mod tests {
             let thickness = random.below(2);
             let lattice = Lattice::over(&bounds, [last; 3]);
             let (slopes, part) = Slopes::new(&ray, &lattice, thickness as f32);
-            let Some(Segment { enter, exit, .. }) = Segment::whole(&bounds, &ray, slack) else { continue };
+            let Some(Segment { enter, exit, .. }) = Segment::within(&bounds, 0, &ray, slack) else { continue };
             assert!(part.is_some_and(|part| part.enter <= enter && exit <= part.exit), "{ray:?} {bounds:?} {part:?}");
             for axis in Axis::ALL {
                 let (view, slope) = (&ray.views[axis as usize], slopes.of(axis));

@@ -13,6 +13,8 @@ pub enum Kind {
     NarrowIndices,
     /// Triangles, three `u32` each.
     WideIndices,
+    /// How many vertices, then a normal of 16 bits each.
+    Normals,
     /// Spheres: centre and radius, four `f32` each.
     Spheres,
     /// A kD-tree, as [`KdTree::as_words`](crate::KdTree::as_words) gives it.
@@ -42,11 +44,12 @@ pub enum Kind {
 }
 
 impl Kind {
-    const KNOWN: [Self; 16] = [
+    const KNOWN: [Self; 17] = [
         Self::Vertices,
         Self::LatticeVertices,
         Self::NarrowIndices,
         Self::WideIndices,
+        Self::Normals,
         Self::Spheres,
         Self::KdTree,
         Self::CompactKdTree,
@@ -68,6 +71,7 @@ impl Kind {
             Self::LatticeVertices => u32::from_le_bytes(*b"lvtx"),
             Self::NarrowIndices => u32::from_le_bytes(*b"idx2"),
             Self::WideIndices => u32::from_le_bytes(*b"idx4"),
+            Self::Normals => u32::from_le_bytes(*b"nrml"),
             Self::Spheres => u32::from_le_bytes(*b"sphr"),
             Self::KdTree => u32::from_le_bytes(*b"kdtr"),
             Self::CompactKdTree => u32::from_le_bytes(*b"kdt4"),
@@ -101,6 +105,7 @@ impl fmt::Display for Kind {
             Self::LatticeVertices => f.write_str("lattice vertices"),
             Self::NarrowIndices => f.write_str("16-bit indices"),
             Self::WideIndices => f.write_str("32-bit indices"),
+            Self::Normals => f.write_str("normals"),
             Self::Spheres => f.write_str("spheres"),
             Self::KdTree => f.write_str("kD-tree"),
             Self::CompactKdTree => f.write_str("compact kD-tree"),

@@ -39,6 +39,17 @@ struct Way {
     fast: f32,
 }
 
+/// When rays pass a plane; NaN is no bound.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Passage {
+    /// Whether they come from higher coordinates; those that do not come from that side stay where they are.
+    pub(crate) descends: bool,
+    /// None is on the far side before this.
+    pub(crate) earliest: f32,
+    /// None that passes is on the near side after this.
+    pub(crate) latest: f32,
+}
+
 impl Way {
     /// Origins and directions from the least to the greatest; none if no ray ascends.
     fn new(origins: [f32; 2], [least, greatest]: [f32; 2]) -> Option<Self> {
@@ -95,6 +106,32 @@ impl Bundle {
     /// A parameter before which none of the rays enters the box; `None` if none of them meets it.
     #[must_use]
     pub fn entry(&self, bounds: &Aabb) -> Option<f32> {
+        self.interval(bounds).map(|(enter, _)| enter)
+    }
+
+    /// When the rays, all of them from `enter` on, pass the plane at `p` of an axis.
+    #[inline(always)]
+    pub(crate) fn passage(&self, axis: Axis, p: f32, enter: f32) -> Passage {
+        let (descends, (earliest, latest)) = match &self.slabs[axis as usize] {
+            Slab::Ascending(way) => (false, way.between(p, p)),
+            Slab::Descending(way) => (true, way.between(-p, -p)),
+            Slab::Both([up, down]) => {
+                let (ascending, descending) = (up.between(p, p), down.between(-p, -p));
+                if descending.1 < enter {
+                    // Those that descend began below the plane, and stay there.
+                    (false, (ascending.0, f32::INFINITY))
+                } else if ascending.1 < enter {
+                    (true, (descending.0, f32::INFINITY))
+                } else {
+                    (false, (f32::NEG_INFINITY, f32::INFINITY))
+                }
+            }
+        };
+        Passage { descends, earliest, latest }
+    }
+
+    /// A parameter before which none of the rays enters the box, and one after which none is in it.
+    pub(crate) fn interval(&self, bounds: &Aabb) -> Option<(f32, f32)> {
         let (mut enter, mut exit) = (self.enter, f32::INFINITY);
         let (min, max) = (bounds.min.to_array(), bounds.max.to_array());
         for ((slab, min), max) in self.slabs.iter().zip(min).zip(max) {
@@ -118,6 +155,6 @@ impl Bundle {
                 return None;
             }
         }
-        Some(enter)
+        Some((enter, exit))
     }
 }

@@ -41,7 +41,9 @@ pub const MAX_COORDINATE: f32 = f32::from_bits((126 + 127) << 23);
 /// Whether all coordinates are finite and at most [`MAX_COORDINATE`] in magnitude.
 #[inline]
 pub(crate) fn in_range(v: glam::Vec3) -> bool {
-    v.x.abs() <= MAX_COORDINATE && v.y.abs() <= MAX_COORDINATE && v.z.abs() <= MAX_COORDINATE
+    // Magnitudes order as their bits do, infinity and NaN above all: without an FPU a fraction of a comparison of floats.
+    let fits = |x: f32| x.to_bits() & 0x7fff_ffff <= MAX_COORDINATE.to_bits();
+    fits(v.x) & fits(v.y) & fits(v.z)
 }
 
 /// The point at `offset` from `point`, rounded once.

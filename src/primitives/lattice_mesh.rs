@@ -1,6 +1,6 @@
 use glam::Vec3;
 
-use super::{Hit, Indices, MeshError, Primitives, Probe, Proximity, Sides, Span, Surface};
+use super::{Hit, Indices, MeshError, Primitives, Probe, Proximity, Sides, Span, Surface, faces::Faces};
 use crate::{
     asset::{Asset, AssetError, Kind, Stored},
     error::Error,
@@ -36,9 +36,7 @@ pub struct LatticeMesh<'a> {
     frame: Aabb,
     lattice: Lattice,
     vertices: &'a [[u16; 3]],
-    indices: Indices<'a>,
-    sides: Sides,
-    masks: Option<&'a [u32]>,
+    faces: Faces<'a>,
 }
 
 impl<'a> LatticeMesh<'a> {
@@ -58,13 +56,13 @@ impl<'a> LatticeMesh<'a> {
         }
         let lattice = Lattice::over(frame, [Self::LAST; 3]);
         indices.check(vertices.len(), |vertex| Some(decode(&lattice, vertices.get(vertex as usize)?)))?;
-        Ok(Self { frame: *frame, lattice, vertices, indices, sides: Sides::Both, masks: None })
+        Ok(Self { frame: *frame, lattice, vertices, faces: Faces::new(indices) })
     }
 
     /// The same mesh, hit from `sides` only.
     #[must_use]
     pub const fn with_sides(self, sides: Sides) -> Self {
-        Self { sides, ..self }
+        Self { faces: Faces { sides, ..self.faces }, ..self }
     }
 
     /// The same mesh, each triangle seen only by rays that share a bit with its mask.
@@ -73,11 +71,7 @@ impl<'a> LatticeMesh<'a> {
     ///
     /// [`MeshError::Masks`] if there is not one mask per triangle.
     pub fn with_masks(self, masks: &'a [u32]) -> Result<Self, MeshError> {
-        if masks.len() == self.indices.len() {
-            Ok(Self { masks: Some(masks), ..self })
-        } else {
-            Err(MeshError::Masks { masks: masks.len(), triangles: self.len() })
-        }
+        Ok(Self { faces: self.faces.with_masks(masks)?, ..self })
     }
 
     /// The box that the lattice is over.
@@ -107,13 +101,13 @@ impl<'a> LatticeMesh<'a> {
     /// The corners of the triangles.
     #[must_use]
     pub const fn indices(&self) -> Indices<'a> {
-        self.indices
+        self.faces.indices
     }
 
     /// The sides from which the triangles can be hit.
     #[must_use]
     pub const fn sides(&self) -> Sides {
-        self.sides
+        self.faces.sides
     }
 
     /// The triangle of this number; one without area if there is none.
@@ -126,7 +120,7 @@ impl<'a> LatticeMesh<'a> {
     /// The vertices of a triangle.
     #[inline(always)]
     pub(crate) fn corners(&self, index: u32) -> Option<[&'a [u16; 3]; 3]> {
-        let [a, b, c] = self.indices.get(index)?;
+        let [a, b, c] = self.faces.indices.get(index)?;
         let vertex = |number: u32| self.vertices.get(number as usize);
         Some([vertex(a)?, vertex(b)?, vertex(c)?])
     }
@@ -140,14 +134,14 @@ fn decode(lattice: &Lattice, &[x, y, z]: &[u16; 3]) -> Vec3 {
 
 impl<'a> From<&LatticeMesh<'a>> for Indices<'a> {
     fn from(mesh: &LatticeMesh<'a>) -> Self {
-        mesh.indices
+        mesh.faces.indices
     }
 }
 
 impl Primitives for LatticeMesh<'_> {
     #[inline(always)]
     fn len(&self) -> u32 {
-        self.indices.len() as u32
+        self.faces.len()
     }
 
     fn bounds(&self, index: u32) -> Aabb {
@@ -162,7 +156,7 @@ impl Primitives for LatticeMesh<'_> {
     fn intersect(&self, index: u32, ray: &PreparedRay, span: &Span) -> Option<Hit> {
         let corners = self.corners(index)?.map(|vertex| (&self.lattice, vertex));
         let crossing = intersect_triangle(corners, ray, || (span.t_min(), span.t_max()))?;
-        if self.sides == Sides::Front && !crossing.front { None } else { span.accept(crossing.t, index) }
+        self.faces.hit(index, &crossing, span)
     }
 
     fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
@@ -171,10 +165,7 @@ impl Primitives for LatticeMesh<'_> {
 
     #[inline(always)]
     fn mask(&self, index: u32) -> u32 {
-        match self.masks {
-            None => u32::MAX,
-            Some(masks) => masks.get(index as usize).copied().unwrap_or(0),
-        }
+        self.faces.mask(index)
     }
 
     #[inline(always)]
@@ -189,12 +180,12 @@ impl Primitives for LatticeMesh<'_> {
 
 impl Proximity for LatticeMesh<'_> {
     fn closest_point(&self, number: u32, point: Vec3) -> Option<Vec3> {
-        self.indices.get(number)?;
+        self.faces.indices.get(number)?;
         Some(self.triangle(number).closest_point(point))
     }
 
     fn approach(&self, index: u32, probe: &Probe) -> Option<Hit> {
-        self.indices.get(index)?;
+        self.faces.indices.get(index)?;
         probe.accept(self.triangle(index).distance(probe.point()), index)
     }
 }

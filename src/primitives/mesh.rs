@@ -2,7 +2,7 @@ use core::fmt;
 
 use glam::Vec3;
 
-use super::{Hit, Indices, Primitives, Probe, Proximity, Span, Surface};
+use super::{Hit, Indices, Primitives, Probe, Proximity, Span, Surface, faces::Faces};
 use crate::{
     asset::{Asset, AssetError, Kind, Stored},
     error::Error,
@@ -86,9 +86,7 @@ impl core::error::Error for MeshError {}
 #[derive(Clone, Copy, Debug)]
 pub struct Mesh<'a> {
     vertices: &'a [Vec3],
-    indices: Indices<'a>,
-    sides: Sides,
-    masks: Option<&'a [u32]>,
+    faces: Faces<'a>,
 }
 
 impl<'a> Mesh<'a> {
@@ -100,13 +98,13 @@ impl<'a> Mesh<'a> {
     pub fn new(vertices: &'a [Vec3], indices: impl Into<Indices<'a>>) -> Result<Self, MeshError> {
         let indices = indices.into();
         indices.check(vertices.len(), |vertex| vertices.get(vertex as usize).copied())?;
-        Ok(Self { vertices, indices, sides: Sides::Both, masks: None })
+        Ok(Self { vertices, faces: Faces::new(indices) })
     }
 
     /// The same mesh, hit from `sides` only.
     #[must_use]
     pub const fn with_sides(self, sides: Sides) -> Self {
-        Self { sides, ..self }
+        Self { faces: Faces { sides, ..self.faces }, ..self }
     }
 
     /// The same mesh, each triangle seen only by rays that share a bit with its mask.
@@ -115,11 +113,7 @@ impl<'a> Mesh<'a> {
     ///
     /// [`MeshError::Masks`] if there is not one mask per triangle.
     pub fn with_masks(self, masks: &'a [u32]) -> Result<Self, MeshError> {
-        if masks.len() == self.indices.len() {
-            Ok(Self { masks: Some(masks), ..self })
-        } else {
-            Err(MeshError::Masks { masks: masks.len(), triangles: self.len() })
-        }
+        Ok(Self { faces: self.faces.with_masks(masks)?, ..self })
     }
 
     /// The vertices.
@@ -131,13 +125,13 @@ impl<'a> Mesh<'a> {
     /// The corners of the triangles.
     #[must_use]
     pub const fn indices(&self) -> Indices<'a> {
-        self.indices
+        self.faces.indices
     }
 
     /// The sides from which the triangles can be hit.
     #[must_use]
     pub const fn sides(&self) -> Sides {
-        self.sides
+        self.faces.sides
     }
 
     /// The triangle of this number; one without area if there is none.
@@ -146,21 +140,21 @@ impl<'a> Mesh<'a> {
     pub fn triangle(&self, index: u32) -> Triangle {
         // Cannot fail for a valid index, see `new`; written so that no panic is linked in.
         let corner = |vertex: u32| self.vertices.get(vertex as usize).copied().unwrap_or(Vec3::ZERO);
-        let [a, b, c] = self.indices.get(index).unwrap_or_default();
+        let [a, b, c] = self.faces.indices.get(index).unwrap_or_default();
         Triangle::new(corner(a), corner(b), corner(c))
     }
 }
 
 impl<'a> From<&Mesh<'a>> for Indices<'a> {
     fn from(mesh: &Mesh<'a>) -> Self {
-        mesh.indices
+        mesh.faces.indices
     }
 }
 
 impl Primitives for Mesh<'_> {
     #[inline(always)]
     fn len(&self) -> u32 {
-        self.indices.len() as u32
+        self.faces.len()
     }
 
     #[inline]
@@ -170,11 +164,11 @@ impl Primitives for Mesh<'_> {
 
     #[inline(always)]
     fn intersect(&self, index: u32, ray: &PreparedRay, span: &Span) -> Option<Hit> {
-        let [a, b, c] = self.indices.get(index)?;
+        let [a, b, c] = self.faces.indices.get(index)?;
         let corner = |vertex: u32| self.vertices.get(vertex as usize).map(AsRef::<[f32; 3]>::as_ref);
         let limits = || (span.t_min(), span.t_max());
         let crossing = intersect_triangle([corner(a)?, corner(b)?, corner(c)?], ray, limits)?;
-        if self.sides == Sides::Front && !crossing.front { None } else { span.accept(crossing.t, index) }
+        self.faces.hit(index, &crossing, span)
     }
 
     fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
@@ -183,10 +177,7 @@ impl Primitives for Mesh<'_> {
 
     #[inline(always)]
     fn mask(&self, index: u32) -> u32 {
-        match self.masks {
-            None => u32::MAX,
-            Some(masks) => masks.get(index as usize).copied().unwrap_or(0),
-        }
+        self.faces.mask(index)
     }
 
     #[inline(always)]
@@ -201,12 +192,12 @@ impl Primitives for Mesh<'_> {
 
 impl Proximity for Mesh<'_> {
     fn closest_point(&self, number: u32, point: Vec3) -> Option<Vec3> {
-        self.indices.get(number)?;
+        self.faces.indices.get(number)?;
         Some(self.triangle(number).closest_point(point))
     }
 
     fn approach(&self, index: u32, probe: &Probe) -> Option<Hit> {
-        self.indices.get(index)?;
+        self.faces.indices.get(index)?;
         probe.accept(self.triangle(index).distance(probe.point()), index)
     }
 }

@@ -4,15 +4,18 @@
 //! structure, query and renderer works on it; the data never carries a trace of the structure.
 
 mod counted;
+mod faces;
 mod from_fn;
 mod hit;
 mod indices;
 mod lattice_mesh;
 mod lattice_triangles;
 mod mesh;
+mod normals;
 mod pair;
 mod proximity;
 mod reordered;
+mod smooth;
 mod spheres;
 mod surface;
 mod triangles;
@@ -24,8 +27,10 @@ pub use indices::Indices;
 pub use lattice_mesh::LatticeMesh;
 pub use lattice_triangles::LatticeTriangles;
 pub use mesh::{Mesh, MeshError, Sides};
+pub use normals::Normals;
 pub use proximity::{Nearest, Probe, Proximity};
 pub use reordered::{Order, OrderError, Renumbering, Reordered};
+pub use smooth::Smooth;
 pub use spheres::{SphereError, Spheres};
 pub use surface::Surface;
 pub(crate) use surface::unit;

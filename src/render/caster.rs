@@ -1,3 +1,4 @@
+use super::Material;
 use crate::{
     accel::{Accelerator, Entries},
     geometry::{Aabb, Bundle, Ray},
@@ -26,8 +27,19 @@ pub trait Caster {
     /// Whether anything lies on the ray, a shadow ray.
     fn any_hit(&self, ray: &Ray, depth: u32) -> bool;
 
+    /// As [`any_hit`](Self::any_hit), for a shadow ray beside another: what `last` names may be tried first.
+    fn any_hit_near(&self, ray: &Ray, depth: u32, _last: &mut Option<u32>) -> bool {
+        self.any_hit(ray, depth)
+    }
+
     /// The surface at a hit.
     fn surface(&self, ray: &Ray, hit: &Hit) -> Surface;
+
+    /// The material of what was hit, if the scene knows it: worlds of instances do, for whose primitives, all numbered
+    /// through, nobody has a list. Otherwise the renderer's materials count.
+    fn material(&self, _hit: &Hit) -> Option<Material> {
+        None
+    }
 
     /// The box around everything.
     fn bounds(&self) -> Aabb;
@@ -48,6 +60,10 @@ impl<A: Accelerator, P: Primitives> Caster for Scene<A, P> {
 
     fn any_hit(&self, ray: &Ray, _depth: u32) -> bool {
         Self::any_hit(self, ray)
+    }
+
+    fn any_hit_near(&self, ray: &Ray, _depth: u32, last: &mut Option<u32>) -> bool {
+        Self::any_hit_near(self, ray, last)
     }
 
     fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {

@@ -7,8 +7,9 @@ use super::{
 
 /// How light becomes the colours of a display that has too few of them.
 ///
-/// Both ways count in linear light, so that from afar a picture is as bright as it was: in the mean over an area, not
-/// in every pixel. They count in integers, without a power function: on a chip they are quicker than [`Nearest`].
+/// [`Nearest`] takes each pixel for itself. [`Ordered`] and [`Diffusion`] count in linear light, so that from afar a picture
+/// is as bright as it was: in the mean over an area, not in every pixel. They count in integers, without a power function:
+/// on a chip they are quicker than the nearest colour.
 pub trait Dither {
     /// The colour for the light at a pixel, column and row.
     fn color<C: Channels>(&mut self, pixel: (u32, u32), light: Vec3) -> C;

@@ -6,6 +6,7 @@
 
 mod camera;
 mod caster;
+mod channels;
 mod color;
 mod dither;
 mod levels;
@@ -14,17 +15,19 @@ mod material;
 mod output;
 mod patch;
 mod progressive;
+mod refine;
 mod renderer;
 mod shade;
 mod tile;
 
 pub use camera::Camera;
 pub use caster::Caster;
+pub use channels::Channels;
 pub use color::Color;
 #[cfg(feature = "graphics")]
 pub(crate) use color::{encode, luminance};
 pub use dither::{Diffusion, Dither, Nearest, Ordered};
-pub use levels::{Channels, Levels};
+pub use levels::Levels;
 pub use light::Light;
 pub use material::{Material, Materials, Numbers};
 pub use patch::Patch;

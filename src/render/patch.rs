@@ -1,12 +1,15 @@
+use core::cell::Cell;
+
 use glam::Vec3;
 
 use super::{Caster, Renderer, Tile};
-use crate::accel::Entries;
+use crate::{accel::Entries, geometry::Ray};
 
 /// A tile of a picture, with where in the scene its rays may begin.
 ///
 /// Looked for once, for all rays of the tile; where they meet nothing, none of them is walked. The smaller the tile, the
-/// nearer to its end a walk begins: 8 x 8 pixels are a good size.
+/// nearer to its end a walk begins: 8 x 8 pixels are a good size. Of each light, the last thing that cast a shadow is tried
+/// first for the next.
 ///
 /// ```
 /// use hitscan::{List, Mesh, Scene, glam::Vec3, render::{Camera, Renderer, Tile}};
@@ -22,17 +25,32 @@ use crate::accel::Entries;
 pub struct Patch<'a, S: ?Sized> {
     renderer: Renderer<'a, S>,
     /// None if each ray begins with everything.
-    entries: Option<Entries>,
+    pub(super) entries: Option<Entries>,
+    /// What last kept the light of each of the first lights from a point.
+    occluders: [Cell<Option<u32>>; LIGHTS],
 }
+
+/// Lights whose last occluder is remembered.
+const LIGHTS: usize = 4;
 
 impl<'a, S: Caster + ?Sized> Patch<'a, S> {
     pub(super) fn new(renderer: Renderer<'a, S>, tile: &Tile) -> Self {
-        Self { renderer, entries: renderer.bundle(tile).map(|bundle| renderer.scene.enter(&bundle)) }
+        let entries = renderer.bundle(tile).map(|bundle| renderer.scene.enter(&bundle));
+        Self { renderer, entries, occluders: Default::default() }
     }
 
     /// The linear colour of a pixel of the tile, as [`Renderer::pixel`].
     #[must_use]
     pub fn pixel(&self, x: u32, y: u32) -> Vec3 {
-        self.renderer.pixel_from(self.entries.as_ref(), x, y)
+        self.renderer.pixel_from(Some(self), x, y)
+    }
+
+    /// Whether something keeps the light of this number from where a shadow ray begins.
+    pub(super) fn shades(&self, light: usize, ray: &Ray, depth: u32) -> bool {
+        let Some(occluder) = self.occluders.get(light) else { return self.renderer.scene.any_hit(ray, depth) };
+        let mut last = occluder.get();
+        let shades = self.renderer.scene.any_hit_near(ray, depth, &mut last);
+        occluder.set(last);
+        shades
     }
 }

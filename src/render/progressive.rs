@@ -49,7 +49,9 @@ impl<'a, S: Caster + ?Sized> Progressive<'a, S> {
         Self { renderer, stride: COARSEST, tiles, patch: None, next: (0, 0) }
     }
 
-    /// Computes at most so many pixels and lets `draw` have their blocks; whether there are more.
+    /// Computes at most so many pixels and lets `draw` have their blocks; false at the end of the picture.
+    ///
+    /// True says that there may be more: where the budget ends with the last pixel, the next step computes none.
     pub fn step(&mut self, pixels: u32, mut draw: impl FnMut(Tile, Vec3)) -> bool {
         self.by_ref().take(pixels as usize).for_each(|(block, light)| draw(block, light));
         self.stride > 0

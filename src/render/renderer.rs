@@ -4,7 +4,6 @@ use glam::Vec3;
 
 use super::{Camera, Caster, Color, Light, Materials, Patch, Progressive, Terms, Tile, Tiles, shade::mirror};
 use crate::{
-    accel::Entries,
     geometry::{Aabb, Bundle, Ray},
     primitives::unit,
 };
@@ -28,7 +27,7 @@ impl fmt::Display for TooShort {
 impl core::error::Error for TooShort {}
 
 /// Pixels that a patch is wide and high.
-const PATCH: u32 = 8;
+pub(super) const PATCH: u32 = 8;
 
 /// A picture of a scene, computed where it is looked at.
 ///
@@ -224,23 +223,24 @@ impl<'a, S: Caster + ?Sized> Renderer<'a, S> {
         self.pixel_from(None, x, y)
     }
 
-    /// The colour of a pixel whose rays may begin at `entries`.
-    pub(super) fn pixel_from(&self, entries: Option<&Entries>, x: u32, y: u32) -> Vec3 {
+    /// The colour of a pixel, of a patch or by itself.
+    pub(super) fn pixel_from(&self, patch: Option<&Patch<'_, S>>, x: u32, y: u32) -> Vec3 {
         let step = 1.0 / self.samples as f32;
         let mut sum = Vec3::ZERO;
         for j in 0..self.samples {
             for i in 0..self.samples {
                 let (dx, dy) = ((i as f32 + 0.5) * step, (j as f32 + 0.5) * step);
                 let ray = self.camera.ray(x as f32 + dx, y as f32 + dy, self.width, self.height);
-                sum += self.light_along(entries, ray);
+                sum += self.light_along(patch, ray);
             }
         }
         sum * (step * step)
     }
 
     /// The light that arrives against `ray`: Whitted, *An improved illumination model for shaded display*, 1980, as a loop.
-    fn light_along(&self, mut entries: Option<&Entries>, mut ray: Ray) -> Vec3 {
+    fn light_along(&self, patch: Option<&Patch<'_, S>>, mut ray: Ray) -> Vec3 {
         let (mut light, mut share) = (Vec3::ZERO, 1.0);
+        let mut entries = patch.and_then(|patch| patch.entries.as_ref());
         for depth in 0..=self.bounces {
             // Only the camera's own ray begins where those of the tile do.
             let hit = match entries.take() {
@@ -251,10 +251,10 @@ impl<'a, S: Caster + ?Sized> Renderer<'a, S> {
                 return light + self.sky(ray.direction) * share;
             };
             let surface = self.scene.surface(&ray, &hit);
-            let material = self.materials.of(hit.primitive);
+            let material = self.scene.material(&hit).unwrap_or_else(|| self.materials.of(hit.primitive));
             let direction = unit(ray.direction);
             let mirrored = if self.terms.reflections && depth < self.bounces { material.reflectivity } else { 0.0 };
-            let own = self.phong(&surface, &material, -direction, depth);
+            let own = self.phong(&surface, &material, -direction, (depth, patch));
             light += own * (share * (1.0 - mirrored));
             share *= mirrored;
             if !(share > 0.0) {

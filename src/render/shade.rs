@@ -1,6 +1,6 @@
 use glam::Vec3;
 
-use super::{Caster, Material, Renderer};
+use super::{Caster, Material, Patch, Renderer};
 use crate::{
     math,
     primitives::{Surface, unit},
@@ -31,24 +31,36 @@ impl Terms {
 }
 
 impl<S: Caster + ?Sized> Renderer<'_, S> {
-    /// The light that a surface sends towards a viewer, mirror images aside.
-    pub(super) fn phong(&self, surface: &Surface, material: &Material, to_viewer: Vec3, depth: u32) -> Vec3 {
+    /// The light that a surface sends towards a viewer, mirror images aside, after so many reflections in a patch.
+    pub(super) fn phong(
+        &self,
+        surface: &Surface,
+        material: &Material,
+        to_viewer: Vec3,
+        (depth, patch): (u32, Option<&Patch<'_, S>>),
+    ) -> Vec3 {
         let terms = &self.terms;
         let mut light = if terms.ambient { self.ambient * material.diffuse } else { Vec3::ZERO };
         if !terms.diffuse && !terms.specular {
             return light;
         }
         let normal = if surface.front { surface.shading_normal } else { -surface.shading_normal };
-        for source in self.lights {
+        for (number, source) in self.lights.iter().enumerate() {
             let to_light = unit(source.direction_from(surface.point));
             let cosine = normal.dot(to_light);
             // What faces away from a light is in its own shadow.
             if !(cosine > 0.0 && surface.normal_towards_ray().dot(to_light) > 0.0) {
                 continue;
             }
-            let start = || surface.start_towards(to_light);
-            if terms.shadows && self.scene.any_hit(&source.shadow_ray(start()), depth) {
-                continue;
+            if terms.shadows {
+                let ray = source.shadow_ray(surface.start_towards(to_light));
+                let is_shaded = match patch {
+                    Some(patch) => patch.shades(number, &ray, depth),
+                    None => self.scene.any_hit(&ray, depth),
+                };
+                if is_shaded {
+                    continue;
+                }
             }
             if terms.diffuse {
                 light += source.color() * material.diffuse * cosine;

@@ -23,8 +23,8 @@ impl Tile {
     pub fn parts(self, width: u32, height: u32) -> impl Iterator<Item = Self> {
         let Self { x, y, .. } = self;
         Tiles::new(self.width, self.height, width, height).map(move |part| Self {
-            x: x + part.x,
-            y: y + part.y,
+            x: x.saturating_add(part.x),
+            y: y.saturating_add(part.y),
             ..part
         })
     }

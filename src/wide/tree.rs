@@ -67,7 +67,7 @@ impl Tree {
         let word = |row: usize| block.get(row * count + lane).copied().unwrap_or(0);
         let corner = |i: usize| [3 * i, 3 * i + 1, 3 * i + 2].map(|row| f32::from_bits(word(row))).into();
         let triangle = Triangle::new(corner(0), corner(1), corner(2));
-        let crossing = triangle.decide(ray, front)?;
+        let crossing = triangle.intersect_again(ray, (span.t_min(), span.t_max()), front)?;
         let number = word(TRIANGLE_WORDS - 1);
         let is_hit = (crossing.front || self.sides == Sides::Both) && self.is_seen(number, ray);
         if is_hit { span.accept(crossing.t, number) } else { None }

@@ -3,8 +3,24 @@
 
 use hitscan::{Hit, Ray, geometry::Aabb, glam::Vec3};
 
+pub mod closed;
 pub mod meshes;
 pub mod plans;
+
+/// How many rays a test casts: `usual`, or as many as `HITSCAN_RAYS` says, for long runs.
+pub fn rays(usual: usize) -> usize {
+    from_environment("HITSCAN_RAYS").unwrap_or(usual)
+}
+
+/// Added to the seeds of what is long run, so that every run may see other scenes: `HITSCAN_SEED`.
+pub fn seed() -> u64 {
+    from_environment("HITSCAN_SEED").unwrap_or(0) as u64
+}
+
+fn from_environment(name: &str) -> Option<usize> {
+    let text = std::env::var(name).ok()?;
+    Some(text.parse().unwrap_or_else(|_| panic!("{name}={text} is no number")))
+}
 
 /// A hit for comparisons that tell -0 from 0.
 pub fn bits(hit: Option<Hit>) -> Option<(u32, u32)> {

@@ -3,10 +3,18 @@
 use std::cell::Cell;
 
 use crate::common::{
+    Random, adversarial_ray,
     meshes::{Triangles, crossing, fan, hair, identical, shrinking},
     plans::presets,
 };
-use hitscan::{Hit, Mesh, PreparedRay, Primitives, Span, accel::Plan, bake, dualsplit, geometry::Aabb, kdtree};
+use hitscan::{
+    Hit, Mesh, PreparedRay, Primitives, Scene, Span,
+    accel::{Hierarchy, Inside, Plan, Structure},
+    bake, dualsplit,
+    geometry::Aabb,
+    kdtree,
+    query::Progress,
+};
 
 /// Triangles that count how often a builder asks for their bounds, whole or clipped.
 struct Watched<'a> {
@@ -86,6 +94,45 @@ fn work_and_bytes_per_primitive_are_bounded() {
             let most = if matches!(plan, Plan::Grid(_)) { 128.0 } else { 20.0 };
             assert!(asked <= most * (COUNT as f64).log2(), "{adversary}, {label}: asked {asked} times");
             assert!(bytes <= 205.0, "{adversary}, {label}: {bytes} bytes");
+        }
+    }
+}
+
+/// How many nodes a structure has: cells of a grid, pairs or nodes with their leaves of a tree.
+fn nodes(structure: &Structure) -> u32 {
+    match structure {
+        Structure::Grid(grid) => return grid.resolution().into_iter().product(),
+        // Carves are nodes that the hierarchy does not tell; each node takes a word at least.
+        Structure::DualSplit(tree) => return tree.ordered_words().count() as u32,
+        _ => {}
+    }
+    let mut cells: Vec<_> = structure.root().into_iter().collect();
+    let mut nodes = 0;
+    while let Some(cell) = cells.pop() {
+        nodes += 1;
+        if let Inside::Cells(inside) = Hierarchy::open(structure, &cell) {
+            cells.extend(inside.into_iter().flatten());
+        }
+    }
+    nodes
+}
+
+#[test]
+fn no_ray_visits_more_nodes_than_there_are() {
+    let mut random = Random::new(15);
+    for (adversary, triangles) in ADVERSARIES {
+        let (vertices, triangles) = triangles(300);
+        let mesh = Mesh::new(&vertices, &triangles[..]).unwrap();
+        for (label, plan) in presets() {
+            let words = bake::build(&mesh, &plan).unwrap();
+            let scene = Scene::new(Structure::open(plan.kind().unwrap(), &words).unwrap(), &mesh).unwrap();
+            let most = nodes(scene.accelerator());
+            for _ in 0..200 {
+                let family = random.pick(&[0, 2, 6]);
+                let ray = adversarial_ray(&mut random, family, &vertices);
+                let ended = matches!(scene.begin(&ray).advance(most), Progress::Done(_));
+                assert!(ended, "{adversary}, {label}: more than {most} nodes: {ray:?}");
+            }
         }
     }
 }

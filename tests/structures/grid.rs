@@ -388,7 +388,7 @@ fn walks_are_short_and_the_mailbox_makes_them_shorter() {
         // In sixteen times as many cells without octants there would be as many.
         let most = if options.density < 2.0 { 12_000 } else { 9_000 };
         assert!(visits < 1000 * (nx + ny + nz) && tests < most, "{visits} {tests}");
-        assert!(fewer * 20 < tests * 19, "{fewer} {tests}");
+        assert!(fewer * 10 < tests * 9, "{fewer} {tests}");
     }
 }
 

@@ -17,5 +17,5 @@ mod quality;
 
 /// Rays for each comparison with the list; `tests/equality.rs` casts more at all structures.
 fn rays() -> usize {
-    std::env::var("HITSCAN_RAYS").ok().and_then(|n| n.parse().ok()).unwrap_or(100_000)
+    common::rays(100_000)
 }

@@ -28,6 +28,18 @@ impl Mesh {
         Self { name: name.into(), vertices, corners }
     }
 
+    /// The names of all meshes in `folder`.
+    pub fn all(folder: &Path) -> Result<Vec<String>, String> {
+        let files = fs::read_dir(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+        let mut names: Vec<String> = files
+            .filter_map(|file| file.ok().map(|file| file.path()))
+            .filter(|path| path.extension().is_some_and(|extension| extension == "tri"))
+            .filter_map(|path| Some(path.file_stem()?.to_str()?.to_owned()))
+            .collect();
+        names.sort();
+        Ok(names)
+    }
+
     /// The mesh in the file `NAME.tri` of `folder`, corners with the same bits made one vertex.
     pub fn load(folder: &Path, name: &str) -> Result<Self, String> {
         let path = folder.join(name).with_extension("tri");
@@ -60,9 +72,28 @@ impl Mesh {
         Ok(hitscan::Mesh::new(&self.vertices, self.indices())?)
     }
 
+    /// What it takes in memory.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.vertices[..])
+            + match &self.corners {
+                Corners::Narrow(list) => size_of_val(&list[..]),
+                Corners::Wide(list) => size_of_val(&list[..]),
+            }
+    }
+
+    /// All vertices.
+    pub fn vertices(&self) -> impl Iterator<Item = Vec3> {
+        self.vertices.iter().copied()
+    }
+
+    /// The numbers of each triangle's corners.
+    pub fn corners(&self) -> impl Iterator<Item = [u32; 3]> {
+        (0..self.len() as u32).filter_map(|number| self.indices().get(number))
+    }
+
     /// The corners of all triangles.
     pub fn triangles(&self) -> impl Iterator<Item = [Vec3; 3]> {
-        (0..self.len() as u32).filter_map(|number| Some(self.indices().get(number)?.map(|v| self.vertices[v as usize])))
+        self.corners().map(|numbers| numbers.map(|number| self.vertices[number as usize]))
     }
 
     fn indices(&self) -> Indices<'_> {

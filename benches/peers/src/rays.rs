@@ -1,5 +1,6 @@
 use std::{f32::consts::TAU, fmt};
 
+use clap::ValueEnum;
 use hitscan::{
     Accelerator, Primitives, Ray, Scene,
     geometry::Aabb,
@@ -26,14 +27,19 @@ pub enum Kind {
     Diffuse,
     /// From where the primary rays hit to a point light.
     Shadow,
+    /// As the diffuse ones, a tenth of the model long: whether something is near.
+    Ambient,
 }
 
 impl Kind {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Primary, Self::Diffuse, Self::Shadow, Self::Ambient];
+
     /// What is asked of them.
     pub const fn query(self) -> Query {
         match self {
             Self::Primary | Self::Diffuse => Query::Closest,
-            Self::Shadow => Query::Any,
+            Self::Shadow | Self::Ambient => Query::Any,
         }
     }
 }
@@ -44,6 +50,7 @@ impl fmt::Display for Kind {
             Self::Primary => "primary",
             Self::Diffuse => "diffuse",
             Self::Shadow => "shadow",
+            Self::Ambient => "ambient",
         })
     }
 }
@@ -55,6 +62,33 @@ pub struct RaySet {
     pub kind: Kind,
     /// The rays.
     pub rays: Vec<Ray>,
+    /// What comes of each: the `t` of its hit, or 0 for any hit; infinite for a miss.
+    pub truth: Vec<f32>,
+}
+
+impl RaySet {
+    fn new<A: Accelerator, P: Primitives>(scene: &Scene<A, P>, kind: Kind, rays: Vec<Ray>) -> Self {
+        let truth = rays.iter().map(|ray| match kind.query() {
+            Query::Closest => scene.closest_hit(ray).map_or(f32::INFINITY, |hit| hit.t),
+            Query::Any => {
+                if scene.any_hit(ray) {
+                    0.0
+                } else {
+                    f32::INFINITY
+                }
+            }
+        });
+        Self { kind, truth: truth.collect(), rays }
+    }
+}
+
+/// In which order the rays come that begin where others hit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Order {
+    /// That of the picture's tiles: neighbours ask for the same memory.
+    Tiles,
+    /// None, as after many bounces.
+    Shuffled,
 }
 
 /// Where the camera stands.
@@ -67,39 +101,78 @@ pub enum View {
 }
 
 impl View {
-    /// The eye and the directions through the pixels of a square picture.
-    fn camera(self, bounds: &Aabb, side: u32) -> (Vec3, Vec<Vec3>) {
-        let place = |i: u32| (i as f32 + 0.5) / side as f32;
-        let pixels = (0..side).flat_map(|y| (0..side).map(move |x| (place(x), place(y))));
+    /// Where the eye is.
+    fn eye(self, bounds: &Aabb) -> Vec3 {
         match self {
-            Self::Outside => {
-                let ahead = Vec3::new(-0.5, -0.45, -0.74).normalize();
-                let right = ahead.cross(Vec3::Y).normalize();
-                let up = right.cross(ahead);
-                // Two radii from the sphere around the model, which is then 60 degrees wide.
-                let half = 0.577;
-                let through = |(x, y)| ahead + (right * (x * 2.0 - 1.0) + up * (1.0 - y * 2.0)) * half;
-                (bounds.center() - ahead * bounds.size().length(), pixels.map(through).map(Vec3::normalize).collect())
-            }
-            Self::Inside => (bounds.center(), pixels.map(|(x, y)| on_sphere(x, 1.0 - y * 2.0)).collect()),
+            // Two radii from the sphere around the model, which is then 60 degrees wide.
+            Self::Outside => bounds.center() - AHEAD.normalize() * bounds.size().length(),
+            Self::Inside => bounds.center(),
         }
+    }
+
+    /// The rays through the pixels of a square picture, of this fineness or a little finer.
+    fn rays(self, bounds: &Aabb, side: u32) -> impl Iterator<Item = Ray> {
+        let eye = self.eye(bounds);
+        let ahead = AHEAD.normalize();
+        let right = ahead.cross(Vec3::Y).normalize();
+        let up = right.cross(ahead);
+        // A multiple of 4, so that no packet of 16 straddles two tiles.
+        let side = side.next_multiple_of(4);
+        let place = move |i: u32| (i as f32 + 0.5) / side as f32;
+        let direction = move |x: f32, y: f32| match self {
+            Self::Outside => (ahead + (right * (x * 2.0 - 1.0) + up * (1.0 - y * 2.0)) * 0.577).normalize(),
+            Self::Inside => on_sphere(x, 1.0 - y * 2.0),
+        };
+        // Tiles of tiles (Morton 1966), as renderers go about it: 16 rays after each other are 4 by 4 pixels.
+        (0..u64::from(side.next_power_of_two()).pow(2))
+            .map(|code| (gather(code), gather(code >> 1)))
+            .filter(move |&(x, y)| x < side && y < side)
+            .map(move |(x, y)| Ray::new(eye, direction(place(x), place(y))))
     }
 }
 
-/// A set of each kind: about `count` primary rays, and as many of the others as of these hit.
-pub fn all<A: Accelerator, P: Primitives>(scene: &Scene<A, P>, view: View, count: usize) -> [RaySet; 3] {
+/// Where the camera looks from outside.
+const AHEAD: Vec3 = Vec3::new(-0.5, -0.45, -0.74);
+
+/// A set of each kind, of about `count` rays.
+///
+/// The primary ones are a picture. The others begin where the rays of a picture hit that is so much finer that as many of
+/// them do.
+pub fn all<A: Accelerator, P: Primitives>(scene: &Scene<A, P>, view: View, count: usize, order: Order) -> [RaySet; 4] {
+    /// How much finer at most, of each side: for a model that is hardly to be seen.
+    const FINEST: f32 = 10.0;
     let bounds = scene.bounds();
-    let (eye, directions) = view.camera(&bounds, (count as f32).sqrt() as u32);
-    let primary: Vec<Ray> = directions.into_iter().map(|direction| Ray::new(eye, direction)).collect();
-    let offset = bounds.size().length() * 1.0e-5;
-    let hits: Vec<(Vec3, Vec3)> = primary.iter().filter_map(|ray| surface(scene, ray, offset)).collect();
+    let size = bounds.size().length();
+    let side = (count as f32).sqrt();
+    let primary: Vec<Ray> = view.rays(&bounds, side as u32).collect();
+    let seen = primary.iter().filter(|ray| scene.any_hit(ray)).count().max(1);
+    let fineness = (primary.len() as f32 / seen as f32).sqrt().min(FINEST);
+    let mut hits: Vec<(Vec3, Vec3)> =
+        view.rays(&bounds, (side * fineness) as u32).filter_map(|ray| surface(scene, &ray, size * 1.0e-5)).collect();
     let mut random = Random::new(1);
-    let diffuse = hits.iter().map(|&(point, normal)| Ray::new(point, scatter(normal, &mut random))).collect();
+    if order == Order::Shuffled {
+        // Fisher and Yates 1938.
+        (1..hits.len()).rev().for_each(|last| hits.swap(last, (random.unit() * (last + 1) as f32) as usize));
+    }
+    let mut bounce =
+        || -> Vec<Ray> { hits.iter().map(|&(point, normal)| Ray::new(point, scatter(normal, &mut random))).collect() };
+    let diffuse = bounce();
+    let ambient = bounce().into_iter().map(|ray| ray.up_to(size * 0.1)).collect();
     // Beside the camera.
+    let eye = view.eye(&bounds);
     let light = eye + (eye - bounds.center()).yzx() * 0.5 + bounds.size() * 0.05;
     let shadow = hits.iter().map(|&(point, _)| Ray::between(point, light)).collect();
-    [(Kind::Primary, primary), (Kind::Diffuse, diffuse), (Kind::Shadow, shadow)]
-        .map(|(kind, rays)| RaySet { kind, rays })
+    [(Kind::Primary, primary), (Kind::Diffuse, diffuse), (Kind::Shadow, shadow), (Kind::Ambient, ambient)]
+        .map(|(kind, rays)| RaySet::new(scene, kind, rays))
+}
+
+/// Every other bit of the lower 32.
+const fn gather(code: u64) -> u32 {
+    let x = code as u32 & 0x5555_5555;
+    let x = (x | x >> 1) & 0x3333_3333;
+    let x = (x | x >> 2) & 0x0f0f_0f0f;
+    let x = (x | x >> 4) & 0x00ff_00ff;
+    (x | x >> 8) & 0x0000_ffff
 }
 
 /// The point `offset` before the surface that `ray` hits, and the normal there.

@@ -9,15 +9,17 @@ use hitscan::{
     accel::Structure,
     asset::{Asset, Kind},
     bake::{self, Baker, OnLattice},
+    glam::Vec3,
 };
 
 use super::{predict, print};
 use crate::{
     chip::{self, Chip},
     failure::{self, Failure},
-    output::{self, write_atomically},
-    scene::{Built, Choice, Named, Palette, Preset, Shape, Source, broken},
+    output,
+    scene::{Built, Choice, Named, Palette, Preset, Shape, Source, StructureArgs, broken, normals_by_place},
     units::{count, parse_bytes},
+    world::{self, write_words},
 };
 
 /// Turn a mesh into the asset that firmware includes
@@ -28,7 +30,7 @@ use crate::{
 #[command(after_help = "Examples: hitscan bake bunny.obj.gz -o bunny.hits --preset small --fit 3M\n          \
                         hitscan bake robot.stl -o robot.hits --target m4 --fit 64K")]
 pub struct Bake {
-    /// Mesh (.obj, .stl, .ply, .gltf, .glb, each also with .gz)
+    /// Mesh (.obj, .stl, .ply, .gltf, .glb, each also with .gz), or the description of a world of placed meshes (.toml)
     model: PathBuf,
     /// Asset to write; - for standard output
     #[arg(short, long, value_name = "FILE", default_value = "scene.hits")]
@@ -47,6 +49,9 @@ pub struct Bake {
     /// Put the vertices on a lattice of 16 bits per coordinate: 6 bytes each instead of 12
     #[arg(long)]
     lattice: bool,
+    /// Store the vertices' normals, in 2 bytes each: triangles are shaded as if they were curved, but for sharp edges
+    #[arg(long, conflicts_with = "lattice")]
+    normals: bool,
     /// The most bytes that the asset may have, such as 64K; the structure is made to fit
     #[arg(long, value_name = "BYTES", value_parser = parse_bytes)]
     fit: Option<usize>,
@@ -55,17 +60,22 @@ pub struct Bake {
 impl Bake {
     pub fn run(&self) -> Result<ExitCode, Failure> {
         output::check(&self.output)?;
+        if self.model.extension().is_some_and(|extension| extension == "toml") {
+            return self.world();
+        }
         let source = Source::load(&self.model)?;
         let Source::Model(geometry) = &source else {
             let what = format!("{}: is an asset already", self.model.display());
             return Err(Failure::new(what, "name the mesh it was made from"));
         };
         let model = source.view(&self.model)?.mesh;
+        let normals = self.normals.then(|| normals_by_place(&model));
+        let normals = normals.as_deref();
         let snapped = self.lattice.then(|| bake::lattice(&model));
         let snapped = snapped.as_ref();
         let shapes = Triangles::of(&model, snapped)?;
         let unmoved: Vec<u32> = (0..model.len()).collect();
-        let bare = bake(&shapes, &geometry.palette, None, self.keep_numbers.then_some(&unmoved)).len() * 4;
+        let bare = bake(&shapes, normals, &geometry.palette, None, self.keep_numbers.then_some(&unmoved)).len() * 4;
         let most = self.fit.map(|most| room(most, bare)).transpose()?;
         let (built, order) = match self.target {
             Some(chip) => shapes.choose(chip, self.structure.unwrap_or_default(), most),
@@ -80,12 +90,12 @@ impl Bake {
         let structure = built.structure(&model)?;
         let keeps = self.keep_numbers && order != unmoved;
         let palette = if keeps { geometry.palette.clone() } else { geometry.palette.reordered(&order) };
-        let words = bake(&shapes, &palette, Some(structure), keeps.then_some(&order));
+        let words = bake(&shapes, normals, &palette, Some(structure), keeps.then_some(&order));
         if let Some(most) = self.fit.filter(|most| words.len() * 4 > *most) {
             let what = format!("--fit {most}: with this structure ({}) it takes {} bytes", built.name, words.len() * 4);
             return Err(Failure::new(what, "allow more bytes, or choose another structure, such as kdtree"));
         }
-        write_atomically(&self.output, |file| words.iter().try_for_each(|word| file.write_all(&word.to_le_bytes())))?;
+        write_words(&self.output, &words)?;
         let mut table = table(&words, &built, &structure, geometry.len(), &self.output)?;
         if let Some(snapped) = snapped {
             let _ = writeln!(table, "vertices moved by at most {} to the lattice", snapped.displacement);
@@ -97,6 +107,34 @@ impl Bake {
                 Triangles::OnLattice(mesh) => predict(&mut table, chip, &built, mesh, asset),
             }?;
         }
+        if self.output == Path::new("-") {
+            failure::note(&table);
+        } else {
+            print(&table)?;
+        }
+        Ok(ExitCode::SUCCESS)
+    }
+}
+
+impl Bake {
+    /// Bakes what a file describes, a structure over each part and one over all places.
+    fn world(&self) -> Result<ExitCode, Failure> {
+        let unfit = [
+            ("--target", self.target.is_some()),
+            ("--keep-numbers", self.keep_numbers),
+            ("--lattice", self.lattice),
+            ("--fit", self.fit.is_some()),
+        ];
+        if let Some((option, _)) = unfit.into_iter().find(|(_, given)| *given) {
+            return Err(Failure::new(format!("{option}: is for meshes"), "leave it out for a world"));
+        }
+        let structure = StructureArgs { structure: self.structure, preset: self.preset.unwrap_or_default() };
+        let words = world::load(&self.model, &structure)?;
+        write_words(&self.output, &words)?;
+        let source = Source::Asset { words, positions: Vec::new() };
+        let table = source.with_subject(&self.output, &StructureArgs::default(), false, |subject| {
+            Ok(format!("{}: {}\n{}\n", self.output.display(), subject.size(), subject.structure()))
+        })?;
         if self.output == Path::new("-") {
             failure::note(&table);
         } else {
@@ -152,6 +190,7 @@ impl<'a> Triangles<'a> {
 
 fn bake(
     shapes: &Triangles<'_>,
+    normals: Option<&[Vec3]>,
     palette: &Palette,
     structure: Option<Structure<'_>>,
     numbers: Option<&Vec<u32>>,
@@ -160,6 +199,9 @@ fn bake(
         Triangles::Plain(mesh) => Baker::new().mesh(mesh),
         Triangles::OnLattice(mesh) => Baker::new().lattice_mesh(mesh),
     };
+    if let Some(normals) = normals {
+        baker = baker.normals(normals);
+    }
     if let Some(structure) = structure {
         baker = baker.structure(structure);
     }
@@ -185,7 +227,9 @@ fn table(
     for section in asset.sections() {
         let bytes = section.words.len() * 4;
         match section.kind {
-            Kind::Vertices | Kind::LatticeVertices | Kind::NarrowIndices | Kind::WideIndices => geometry += bytes,
+            Kind::Vertices | Kind::LatticeVertices | Kind::NarrowIndices | Kind::WideIndices | Kind::Normals => {
+                geometry += bytes;
+            }
             Kind::Materials | Kind::MaterialNumbers => materials += bytes,
             _ => tree += bytes,
         }

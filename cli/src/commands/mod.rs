@@ -5,6 +5,7 @@ mod cast;
 mod compare;
 mod diff;
 mod info;
+mod merge;
 mod render;
 
 use std::{
@@ -34,11 +35,12 @@ pub enum Command {
     Cast(cast::Cast),
     Compare(compare::Compare),
     Diff(diff::Diff),
+    Merge(merge::Merge),
 }
 
 impl Command {
     /// Their names, in order.
-    pub const NAMES: [&'static str; 6] = ["render", "bake", "info", "cast", "compare", "diff"];
+    pub const NAMES: [&'static str; 7] = ["render", "bake", "info", "cast", "compare", "diff", "merge"];
 
     /// Does it; the code to exit with.
     pub fn run(&self) -> Result<ExitCode, Failure> {
@@ -49,6 +51,7 @@ impl Command {
             Self::Cast(cast) => cast.run(),
             Self::Compare(compare) => compare.run(),
             Self::Diff(diff) => diff.run(),
+            Self::Merge(merge) => merge.run(),
         }
     }
 }

@@ -1,14 +1,8 @@
 use std::{
-    iter,
+    ops::Range,
     path::{Path, PathBuf},
     process::ExitCode,
-    time::Instant,
-};
-
-use hitscan::{
-    Primitives, parallel,
-    primitives::Spheres,
-    render::{Camera, Caster, Materials, Renderer, Terms},
+    time::{Duration, Instant},
 };
 
 use super::{Threads, line, print};
@@ -17,9 +11,10 @@ use crate::{
     output::{self, write_atomically},
     picture::{preview, write_png},
     progress::Progress,
-    scene::{Built, Palette, Smooth, Source, StructureArgs, View, builtin::BuiltIn},
-    stage::{CameraArg, Counted, DEPTHS, Grounded, Lighting, Tally, Up, Viewpoint, glazed, plate},
-    units::{Size, count, seconds},
+    scene::Source,
+    shot::{Identity, Part, Settings, Shot, Tiles, rows, with_shot},
+    stage::{DEPTHS, Tally},
+    units::{count, seconds},
 };
 
 /// Draw a mesh, an asset or, without either, the built-in scene
@@ -37,63 +32,20 @@ pub struct Render {
     /// PNG to write; - for standard output
     #[arg(short, long, value_name = "FILE", default_value = "picture.png")]
     output: PathBuf,
-    /// Pixels of the picture
-    #[arg(long, value_name = "WxH", default_value = "960x640")]
-    size: Size,
     #[command(flatten)]
-    structure: StructureArgs,
-    /// The most mirror images within mirror images
-    #[arg(short, long, value_name = "N", default_value_t = 3,
-          value_parser = clap::value_parser!(u32).range(0..DEPTHS as i64))]
-    bounces: u32,
-    /// Rays per pixel along each side: 3 makes 9
-    #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=16))]
-    samples: u32,
+    settings: Settings,
     #[command(flatten)]
     threads: Threads,
-    /// Where to look from and at, and the vertical angle of view; found by itself if not given
-    #[arg(short, long, value_name = "EYE/TARGET[/DEGREES]", allow_hyphen_values = true)]
-    camera: Option<CameraArg>,
-    /// The axis that points up; guessed from the shape if not given
-    #[arg(long, value_name = "AXIS")]
-    up: Option<Up>,
-    /// The terms of light to compute, separated by commas
-    #[arg(long, value_name = "TERMS", value_delimiter = ',', default_values = ["all"])]
-    terms: Vec<Term>,
-    /// Shade the triangles of a mesh or an asset as if they were curved, but for sharp edges
-    #[arg(long)]
-    smooth: bool,
-    /// No plate below a mesh or an asset
-    #[arg(long)]
-    no_ground: bool,
+    /// Draw only these of N tiles, A..B from A to before B or a single one, as a part for `hitscan merge`; a part that
+    /// stands in the file already is continued
+    #[arg(long, value_name = "A..B", requires = "of", conflicts_with = "preview")]
+    tiles: Option<Tiles>,
+    /// How many tiles the picture is divided into, from top to bottom
+    #[arg(long, value_name = "N", requires = "tiles", value_parser = clap::value_parser!(u32).range(1..))]
+    of: Option<u32>,
     /// Draw the picture in the terminal, too
     #[arg(long)]
     preview: bool,
-}
-
-/// A term of light.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-enum Term {
-    /// All of them
-    All,
-    /// Light from everywhere
-    Ambient,
-    /// Light of the lamps, scattered
-    Diffuse,
-    /// Highlights
-    Specular,
-    /// Whether lamps are seen at all
-    Shadows,
-    /// Mirror images
-    Reflections,
-}
-
-/// What a picture shows, and how.
-struct Shot<'a> {
-    scene: &'a (dyn Caster + Sync),
-    camera: Camera,
-    lighting: &'a Lighting,
-    materials: Materials<'a>,
 }
 
 /// A picture and how it came about.
@@ -107,14 +59,19 @@ impl Render {
     pub fn run(&self) -> Result<ExitCode, Failure> {
         output::check(&self.output)?;
         let begun = Instant::now();
-        let (mut text, picture) = match &self.model {
-            Some(path) => self.file(path)?,
-            None => self.built_in()?,
+        let source = self.model.as_deref().map(|path| Source::load(path).map(|source| (source, path))).transpose()?;
+        let source = source.as_ref().map(|(source, path)| (source, *path));
+        let (width, height) = self.settings.size();
+        let (mut text, picture) = match self.tiles.zip(self.of) {
+            Some((tiles, of)) => self.part(source, tiles, of)?,
+            None => {
+                let drawn = with_shot(source, &self.settings, |shot, text| Ok((text, self.draw(shot, 0..height)?)))?;
+                let writing = Progress::spinner("writing the picture …");
+                write_png(&self.output, width, height, &drawn.1.pixels)?;
+                drop(writing);
+                drawn
+            }
         };
-        let writing = Progress::spinner("writing the picture …");
-        let Size { width, height } = self.size;
-        write_png(&self.output, width, height, &picture.pixels)?;
-        drop(writing);
         self.describe(&mut text, &picture, begun.elapsed().as_secs_f64());
         if self.output == Path::new("-") {
             failure::note(&text);
@@ -129,100 +86,54 @@ impl Render {
         Ok(ExitCode::SUCCESS)
     }
 
-    /// The picture of a mesh file or an asset.
-    fn file(&self, path: &Path) -> Result<(String, Picture), Failure> {
-        let source = Source::load(path)?;
-        let view = source.view(path)?;
-        let built = view.build(self.structure.structure, self.structure.preset)?;
-        let normals = if self.smooth { Smooth::normals(&view.mesh) } else { Vec::new() };
-        let shaded = Smooth::new(view.mesh, &normals);
-        let renumbered = view.renumbered(shaded)?;
-        let scene = match &renumbered {
-            Some(triangles) => built.scene(triangles)?,
-            None => built.scene(&shaded)?,
-        };
-        let primitives = view.mesh.len();
-
-        let bounds = scene.bounds();
-        let up = self.up.unwrap_or_else(|| if view.y_up { Up::Y } else { Up::guess(&bounds) });
-        let points = view.mesh.vertices().iter().copied().filter(|point| bounds.contains(*point));
-        let viewpoint = Viewpoint::new(self.camera, &bounds, up, self.aspect(), points);
-        let lighting = Lighting::studio(&bounds, &viewpoint);
-        let palette = dress(&view);
-        let grounded = Grounded::new(&*scene, up as usize, primitives)?;
-        let shot = Shot {
-            scene: if self.no_ground { &*scene } else { &grounded },
-            camera: viewpoint.camera,
-            lighting: &lighting,
-            materials: palette.as_materials(),
-        };
-        let what = format!("{}: {} triangles", path.display(), count(primitives));
-        Ok((summary(&what, &built, primitives), self.draw(&shot)?))
-    }
-
-    /// The picture of the built-in scene.
-    fn built_in(&self) -> Result<(String, Picture), Failure> {
-        let builtin = BuiltIn::new();
-        let internal = |error: &dyn std::fmt::Display| Failure::new(error, "report this as a bug");
-        let mesh = Smooth::new(builtin.geometry.mesh()?, &builtin.normals);
-        let spheres = Spheres::new(&builtin.spheres).map_err(|error| internal(&error))?;
-        let primitives = (mesh, spheres);
-        let structure = self.structure.structure.unwrap_or_default();
-        let built = Built::new(&primitives, structure, self.structure.preset)?;
-        let scene = built.scene(&primitives)?;
-
-        let camera = self.camera.unwrap_or(BuiltIn::CAMERA);
-        let up = self.up.unwrap_or(Up::Y);
-        let viewpoint = Viewpoint::new(Some(camera), &scene.bounds(), up, self.aspect(), iter::empty());
-        let lighting = BuiltIn::lighting();
-        let materials = builtin.palette.as_materials();
-        let shot = Shot { scene: &*scene, camera: viewpoint.camera, lighting: &lighting, materials };
-        let (triangles, spheres) = (builtin.geometry.len(), builtin.spheres.len());
-        let what = format!("built-in scene: {} triangles, {spheres} spheres", count(triangles));
-        Ok((summary(&what, &built, primitives.len()), self.draw(&shot)?))
-    }
-
-    fn aspect(&self) -> f32 {
-        self.size.width as f32 / self.size.height as f32
-    }
-
-    fn terms(&self) -> Terms {
-        let has = |term| self.terms.contains(&Term::All) || self.terms.contains(&term);
-        Terms {
-            ambient: has(Term::Ambient),
-            diffuse: has(Term::Diffuse),
-            specular: has(Term::Specular),
-            shadows: has(Term::Shadows),
-            reflections: has(Term::Reflections),
+    /// Draws some tiles, continues if the file holds the first of them, and keeps it up to date on the way.
+    fn part(&self, source: Option<(&Source, &Path)>, tiles: Tiles, of: u32) -> Result<(String, Picture), Failure> {
+        /// How much work may be lost.
+        const BETWEEN_SAVES: Duration = Duration::from_secs(10);
+        let (width, height) = self.settings.size();
+        if of > height || tiles.end > of {
+            let what = format!("--tiles {tiles} --of {of}: the picture has {height} rows");
+            return Err(Failure::new(what, "ask for tiles below N, and at most as many as rows"));
         }
+        let identity = Identity::new(source.map(|(source, _)| source), &self.settings)?;
+        let standing = Part::read(&self.output).ok();
+        let standing = standing.filter(|part| part.begins(&identity, (width, height), tiles, of));
+        let empty = Tiles { end: tiles.start, ..tiles };
+        let mut part = standing.unwrap_or(Part { identity, width, height, tiles: empty, of, pixels: Vec::new() });
+        with_shot(source, &self.settings, |shot, text| {
+            let mut all = Picture { pixels: Vec::new(), tally: Tally::default(), seconds: 0.0 };
+            let mut saved = Instant::now();
+            while part.tiles.end < tiles.end {
+                let picture = self.draw(shot, rows(height, part.tiles.end, of))?;
+                part.pixels.extend(picture.pixels);
+                part.tiles.end += 1;
+                all.tally.add(&picture.tally);
+                all.seconds += picture.seconds;
+                if part.tiles.end == tiles.end || saved.elapsed() > BETWEEN_SAVES && self.output != Path::new("-") {
+                    part.write(&self.output)?;
+                    saved = Instant::now();
+                }
+            }
+            Ok((text, all))
+        })
     }
 
-    fn draw(&self, shot: &Shot<'_>) -> Result<Picture, Failure> {
-        let Size { width, height } = self.size;
+    fn draw(&self, shot: &Shot<'_>, rows: Range<u32>) -> Result<Picture, Failure> {
         let pool = self.threads.pool()?;
-        let counted = Counted::new(shot.scene, self.threads.count());
-        let [below, above] = shot.lighting.background;
-        let renderer = Renderer::new(&counted, shot.camera, width, height)
-            .with_lights(&shot.lighting.lights)
-            .with_ambient(shot.lighting.ambient)
-            .with_background(below, above)
-            .with_materials(shot.materials)
-            .with_terms(self.terms())
-            .with_bounces(self.bounces)
-            .with_samples(self.samples);
-        let mut pixels = vec![[0; 3]; width as usize * height as usize];
-        let progress = Progress::bar("drawing", height.into());
-        pool.install(|| parallel::render_with(&renderer, &mut pixels, |tile| progress.advance(tile.height.into())))
-            .map_err(|error| Failure::new(error, "report this as a bug"))?;
-        let seconds = progress.finish();
-        Ok(Picture { pixels, tally: counted.tally(), seconds })
+        let progress = Progress::bar("drawing", rows.len() as u64);
+        let (pixels, tally) = shot.counted(self.threads.count(), |shot| {
+            pool.install(|| shot.rows_with(rows, |rows| progress.advance(rows.into())))
+        });
+        Ok(Picture { pixels: pixels?, tally, seconds: progress.finish() })
     }
 
     /// Adds what the picture took.
     fn describe(&self, text: &mut String, picture: &Picture, total: f64) {
         let Picture { tally, seconds: drawing, .. } = picture;
-        let samples = self.samples * self.samples;
-        line(text, "picture", format!("{}, {} x {samples} samples", self.output.display(), self.size));
+        let samples = self.settings.samples * self.settings.samples;
+        let of = self.tiles.zip(self.of).map_or(String::new(), |(tiles, of)| format!(", tiles {tiles} of {of}"));
+        let size = self.settings.size;
+        line(text, "picture", format!("{}, {size} x {samples} samples{of}", self.output.display()));
         for depth in 0..DEPTHS {
             let (closest, shadow) = (tally.closest[depth], tally.shadow[depth]);
             if closest > 0 {
@@ -232,28 +143,11 @@ impl Render {
             }
         }
         let threads = self.threads.count();
-        let rate = tally.rays() as f64 / drawing * 1.0e-6;
+        let rate = tally.rays() as f64 / drawing.max(1.0e-9) * 1.0e-6;
         line(text, "rays in all", format!("{:>12} in {}, {rate:.2} million/s", count(tally.rays()), seconds(*drawing)));
-        let share = (tally.seconds / (drawing * threads as f64)).min(1.0) * 100.0;
+        let share = (tally.seconds / (drawing * threads as f64).max(1.0e-9)).min(1.0) * 100.0;
         let plural = if threads == 1 { "thread" } else { "threads" };
         line(text, "time in queries", format!("about {share:.0} % on {threads} {plural} (sampled)"));
         line(text, "total", seconds(total));
     }
-}
-
-/// What is shown, under which structure.
-fn summary(what: &str, built: &Built, primitives: u32) -> String {
-    let mut text = format!("{what}\n");
-    line(&mut text, "structure", built.describe(primitives as usize));
-    text
-}
-
-/// The materials of all triangles, and that of the plate below them.
-fn dress(view: &View<'_>) -> Palette {
-    let mut palette = Palette::default();
-    for index in 0..view.mesh.len() {
-        palette.push(view.materials.map_or_else(glazed, |materials| materials.of(index)), 1);
-    }
-    palette.push(plate(), 1);
-    palette
 }

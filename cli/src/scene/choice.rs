@@ -11,7 +11,7 @@ use hitscan::accel::{
 use super::Preset;
 
 /// A structure that can be asked for by name.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 pub struct Named {
     /// Its name on the command line.
     pub name: &'static str,
@@ -155,13 +155,28 @@ impl FromStr for Choice {
 }
 
 /// The options that choose a structure.
-#[derive(Clone, Copy, Debug, clap::Args)]
+#[derive(Clone, Copy, Debug, Default, clap::Args)]
 pub struct StructureArgs {
     #[arg(short, long, value_name = "NAME", help = Choice::help("primitives") + " [default: the asset's own, or auto]")]
     pub structure: Option<Choice>,
     /// What the structure is tuned for
     #[arg(short, long, value_name = "PRESET", default_value = "balanced")]
     pub preset: Preset,
+}
+
+impl StructureArgs {
+    /// As they are given on the command line.
+    pub fn arguments(&self) -> Vec<String> {
+        let mut arguments = vec!["--preset".to_owned(), self.preset.name().to_owned()];
+        if let Some(choice) = self.structure {
+            let name = match choice {
+                Choice::Auto => "auto",
+                Choice::Named(named) => named.name,
+            };
+            arguments.extend(["--structure".to_owned(), name.to_owned()]);
+        }
+        arguments
+    }
 }
 
 #[cfg(test)]

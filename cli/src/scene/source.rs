@@ -4,17 +4,20 @@ use hitscan::{
     Error, LatticeMesh, Mesh,
     accel::Structure,
     asset::{Asset, AssetError, Kind},
+    bake::Baker,
     glam::Vec3,
-    primitives::{Indices, Primitives, Renumbering, Reordered},
+    primitives::{Indices, Normals, Primitives, Renumbering, Reordered},
     render::Materials,
 };
 
-use super::{Built, Choice, Palette, Preset, broken};
+use super::{Built, Choice, Palette, Preset, StructureArgs, broken};
 use crate::{
     failure::{Failure, warn},
     input,
     model::{Fault, LoadError, Model, Placement},
     progress::Progress,
+    version::hex,
+    world,
 };
 
 /// The first bytes of an asset.
@@ -103,6 +106,8 @@ pub struct View<'a> {
     pub mesh: Mesh<'a>,
     /// Their materials, if it names any.
     pub materials: Option<Materials<'a>>,
+    /// The normals of an asset's vertices, if it has any.
+    pub normals: Option<Normals<'a>>,
     /// The structure of an asset, if it has one.
     pub structure: Option<Structure<'a>>,
     /// The numbers that the triangles of an asset had in its model, if it keeps them.
@@ -114,13 +119,19 @@ pub struct View<'a> {
 }
 
 impl Source {
-    /// Reads a mesh file or an asset, told apart by the first bytes and the extension.
+    /// Reads a mesh file, an asset or the description of a world, told apart by the first bytes and the extension.
+    ///
+    /// # Errors
+    ///
+    /// What is wrong with the file.
     pub fn load(path: &Path) -> Result<Self, Failure> {
         let progress = Progress::spinner(&format!("reading {} …", path.display()));
         let mut start = [0; 4];
         let marked = File::open(path).and_then(|mut file| file.read_exact(&mut start)).is_ok() && start == *MAGIC;
         let source = if marked || path.extension().is_some_and(|extension| extension == "hits") {
             Self::load_asset(path)?
+        } else if path.extension().is_some_and(|extension| extension == "toml") {
+            Self::Asset { words: world::load(path, &StructureArgs::default())?, positions: Vec::new() }
         } else {
             Self::Model(Geometry::load(path).map_err(|failure| mention_assets(failure, path))?)
         };
@@ -142,6 +153,31 @@ impl Source {
         Ok(Self::Asset { words, positions })
     }
 
+    /// The asset, if it is one of scenes that are placed.
+    pub fn world(&self) -> Option<Asset<'_>> {
+        let Self::Asset { words, .. } = self else { return None };
+        let asset = Asset::from_words(words).ok()?;
+        asset.sections().any(|section| section.kind == Kind::Instances).then_some(asset)
+    }
+
+    /// The SHA-256 of what there is to see.
+    pub fn hash(&self) -> Result<String, Failure> {
+        let hash = |words: &[u32]| {
+            let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
+            hex(&bytes)
+        };
+        match self {
+            Self::Model(geometry) => {
+                let mut baker = Baker::new().mesh(&geometry.mesh()?);
+                if !geometry.palette.materials.is_empty() {
+                    baker = baker.materials(&geometry.palette.materials, geometry.palette.as_numbers());
+                }
+                Ok(hash(&baker.finish()))
+            }
+            Self::Asset { words, .. } => Ok(hash(words)),
+        }
+    }
+
     /// What there is to see, checked in full; `path` is for the error.
     pub fn view(&self, path: &Path) -> Result<View<'_>, Failure> {
         match self {
@@ -153,7 +189,12 @@ impl Source {
                 let palette = &geometry.palette;
                 let materials = (!palette.materials.is_empty()).then(|| palette.as_materials());
                 let mesh = geometry.mesh().map_err(name)?;
-                Ok(View { mesh, materials, structure: None, renumbering: None, y_up: geometry.y_up, seconds: 0.0 })
+                let (y_up, seconds) = (geometry.y_up, 0.0);
+                Ok(View { mesh, materials, normals: None, structure: None, renumbering: None, y_up, seconds })
+            }
+            Self::Asset { .. } if self.world().is_some() => {
+                let what = format!("{}: is a world of placed scenes", path.display());
+                Err(Failure::new(what, "name one of the meshes that are placed"))
             }
             Self::Asset { words, positions } => {
                 let progress = Progress::spinner("checking the asset …");
@@ -167,6 +208,7 @@ impl Source {
                     asset.read().map_err(damaged)?
                 };
                 let materials = has(Kind::Materials).then(|| asset.read().map_err(damaged)).transpose()?;
+                let normals = has(Kind::Normals).then(|| asset.read().map_err(damaged)).transpose()?;
                 // An asset without one is a list.
                 let structure = match asset.read() {
                     Ok(structure) => Some(structure),
@@ -174,7 +216,8 @@ impl Source {
                     Err(error) => return Err(damaged(error)),
                 };
                 let renumbering = has(Kind::Numbers).then(|| asset.read().map_err(damaged)).transpose()?;
-                Ok(View { mesh, materials, structure, renumbering, y_up: false, seconds: progress.finish() })
+                let (y_up, seconds) = (false, progress.finish());
+                Ok(View { mesh, materials, normals, structure, renumbering, y_up, seconds })
             }
         }
     }
@@ -195,7 +238,7 @@ impl<'a> View<'a> {
     }
 }
 
-fn damaged(path: &Path, error: impl std::fmt::Display) -> Failure {
+pub(super) fn damaged(path: &Path, error: impl std::fmt::Display) -> Failure {
     Failure::new(format!("{}: {error}", path.display()), "fetch or bake the asset again")
 }
 

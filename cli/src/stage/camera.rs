@@ -1,4 +1,4 @@
-use std::str::FromStr;
+use std::{fmt, str::FromStr};
 
 use hitscan::{geometry::Aabb, glam::Vec3, render::Camera};
 
@@ -37,6 +37,14 @@ impl FromStr for CameraArg {
             Ok(fov) if (0.1..=170.0).contains(&fov) && parts.next().is_none() => Ok(Self { eye, target, fov }),
             _ => Err("the angle of view must be 0.1 to 170 degrees".to_owned()),
         }
+    }
+}
+
+/// As it is given on the command line; reads back to the same bits.
+impl fmt::Display for CameraArg {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let ([a, b, c], [d, e, g]) = (self.eye.to_array(), self.target.to_array());
+        write!(f, "{a},{b},{c}/{d},{e},{g}/{}", self.fov)
     }
 }
 
@@ -159,6 +167,8 @@ mod tests {
         let camera: CameraArg = "-1,2,3/0,0,0".parse().unwrap();
         assert_eq!((camera.eye, camera.fov), (Vec3::new(-1.0, 2.0, 3.0), FOV));
         assert_eq!("1,2,3/0,0,0/60".parse::<CameraArg>().unwrap().fov, 60.0);
+        let odd: CameraArg = "-0.1,1e-30,3e9/0.3,-0,7/33.3".parse().unwrap();
+        assert_eq!(odd.to_string().parse(), Ok(odd));
         for bad in [
             "",
             "1,2,3",

@@ -3,7 +3,13 @@ use std::{
     time::Instant,
 };
 
-use hitscan::{Hit, Ray, geometry::Aabb, primitives::Surface, render::Caster};
+use hitscan::{
+    Hit, Ray,
+    accel::Entries,
+    geometry::{Aabb, Bundle},
+    primitives::Surface,
+    render::{Caster, Material},
+};
 
 /// The most reflections that can be told apart, and one for the camera's own rays.
 pub const DEPTHS: usize = 17;
@@ -45,6 +51,15 @@ impl Tally {
     /// All rays.
     pub fn rays(&self) -> u64 {
         self.closest.iter().chain(&self.shadow).sum()
+    }
+
+    /// Adds what was counted elsewhere.
+    pub fn add(&mut self, other: &Self) {
+        for depth in 0..DEPTHS {
+            self.closest[depth] += other.closest[depth];
+            self.shadow[depth] += other.shadow[depth];
+        }
+        self.seconds += other.seconds;
     }
 }
 
@@ -108,12 +123,29 @@ impl<S: Caster + ?Sized> Caster for Counted<'_, S> {
         self.counted(|counter| &counter.closest, depth, || self.scene.closest_hit(ray, depth))
     }
 
+    /// Looked for once a tile, and no ray: not counted.
+    fn enter(&self, bundle: &Bundle) -> Entries {
+        self.scene.enter(bundle)
+    }
+
+    fn closest_hit_from(&self, entries: &Entries, ray: &Ray) -> Option<Hit> {
+        self.counted(|counter| &counter.closest, 0, || self.scene.closest_hit_from(entries, ray))
+    }
+
     fn any_hit(&self, ray: &Ray, depth: u32) -> bool {
         self.counted(|counter| &counter.any, depth, || self.scene.any_hit(ray, depth))
     }
 
+    fn any_hit_near(&self, ray: &Ray, depth: u32, last: &mut Option<u32>) -> bool {
+        self.counted(|counter| &counter.any, depth, || self.scene.any_hit_near(ray, depth, last))
+    }
+
     fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
         self.scene.surface(ray, hit)
+    }
+
+    fn material(&self, hit: &Hit) -> Option<Material> {
+        self.scene.material(hit)
     }
 
     fn bounds(&self) -> Aabb {
@@ -153,10 +185,12 @@ mod tests {
             for depth in 0..3 {
                 (0..100).for_each(|_| assert!(counted.closest_hit(&ray, depth).is_none()));
             }
+            assert!(counted.closest_hit_from(&Entries::everything(Aabb::EMPTY), &ray).is_none());
             assert!(!counted.any_hit(&ray, 99));
+            assert!(!counted.any_hit_near(&ray, 99, &mut None));
         });
         let tally = counted.tally();
-        assert_eq!(tally.closest[..4], [200, 200, 200, 0]);
-        assert_eq!((tally.shadow[DEPTHS - 1], tally.rays()), (2, 602));
+        assert_eq!(tally.closest[..4], [202, 200, 200, 0]);
+        assert_eq!((tally.shadow[DEPTHS - 1], tally.rays()), (4, 606));
     }
 }

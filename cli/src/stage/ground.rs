@@ -1,6 +1,10 @@
 use hitscan::{
-    Hit, List, PreparedRay, Primitives, Ray, Scene, Span, geometry::Aabb, glam::Vec3, primitives::Surface,
-    render::Caster,
+    Hit, List, PreparedRay, Primitives, Ray, Scene, Span,
+    accel::Entries,
+    geometry::{Aabb, Bundle},
+    glam::Vec3,
+    primitives::Surface,
+    render::{Caster, Material},
 };
 
 use crate::failure::Failure;
@@ -76,15 +80,35 @@ impl<'a, S: Caster + ?Sized> Grounded<'a, S> {
     }
 }
 
-impl<S: Caster + ?Sized> Caster for Grounded<'_, S> {
-    fn closest_hit(&self, ray: &Ray, depth: u32) -> Option<Hit> {
+impl<S: ?Sized> Grounded<'_, S> {
+    /// The first hit of the ray with the plate or with the scene, which is asked up to the plate and whose number is less.
+    fn first(&self, ray: &Ray, of_scene: impl FnOnce(&Ray) -> Option<Hit>) -> Option<Hit> {
         let below = self.plate.closest_hit(ray).map(|hit| Hit { primitive: self.number, ..hit });
         let nearer = below.map_or(*ray, |hit| ray.up_to(hit.t));
-        self.scene.closest_hit(&nearer, depth).or(below)
+        of_scene(&nearer).or(below)
+    }
+}
+
+impl<S: Caster + ?Sized> Caster for Grounded<'_, S> {
+    fn closest_hit(&self, ray: &Ray, depth: u32) -> Option<Hit> {
+        self.first(ray, |ray| self.scene.closest_hit(ray, depth))
+    }
+
+    /// Where rays may begin in the scene; the plate needs no beginning.
+    fn enter(&self, bundle: &Bundle) -> Entries {
+        self.scene.enter(bundle)
+    }
+
+    fn closest_hit_from(&self, entries: &Entries, ray: &Ray) -> Option<Hit> {
+        self.first(ray, |ray| self.scene.closest_hit_from(entries, ray))
     }
 
     fn any_hit(&self, ray: &Ray, depth: u32) -> bool {
         self.plate.any_hit(ray) || self.scene.any_hit(ray, depth)
+    }
+
+    fn any_hit_near(&self, ray: &Ray, depth: u32, last: &mut Option<u32>) -> bool {
+        self.plate.any_hit(ray) || self.scene.any_hit_near(ray, depth, last)
     }
 
     fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
@@ -95,6 +119,10 @@ impl<S: Caster + ?Sized> Caster for Grounded<'_, S> {
         }
     }
 
+    fn material(&self, hit: &Hit) -> Option<Material> {
+        if hit.primitive == self.number { None } else { self.scene.material(hit) }
+    }
+
     fn bounds(&self) -> Aabb {
         self.scene.bounds().union(&Caster::bounds(&self.plate))
     }
@@ -102,7 +130,10 @@ impl<S: Caster + ?Sized> Caster for Grounded<'_, S> {
 
 #[cfg(test)]
 mod tests {
-    use hitscan::Mesh;
+    use hitscan::{
+        Mesh,
+        render::{Camera, Renderer},
+    };
 
     use super::*;
 
@@ -121,5 +152,26 @@ mod tests {
         let away = Ray::new(surface.start_towards(Vec3::Y), Vec3::Y);
         assert!(grounded.closest_hit(&away, 0).is_none() && !grounded.any_hit(&away, 0));
         assert!(grounded.closest_hit(&down(1000.0), 0).is_none());
+    }
+
+    /// A picture by tiles, through both decorators, is the picture pixel by pixel, and tiles that see nothing of the scene
+    /// are told.
+    #[test]
+    fn tiles_enter_what_stands_on_the_plate() {
+        let vertices = [Vec3::new(-1.0, 1.0, -1.0), Vec3::new(3.0, 1.0, -1.0), Vec3::new(-1.0, 4.0, 3.0)];
+        let mesh = Mesh::new(&vertices, &[[0_u16, 1, 2]]).unwrap();
+        let scene = Scene::new(List::new(&mesh).unwrap(), &mesh).unwrap();
+        let counted = super::super::Counted::new(&scene, 1);
+        let grounded = Grounded::new(&counted, 1, 1).unwrap();
+        let camera = Camera::pinhole(Vec3::new(-4.0, 6.0, -9.0), Vec3::ONE, Vec3::Y, 0.9);
+        let renderer = Renderer::new(&grounded, camera, 96, 96);
+        let mut empty = 0;
+        for tile in renderer.tiles(32, 16) {
+            empty += u32::from(grounded.enter(&camera.bundle(&tile, 96, 96).unwrap()).is_empty());
+            let mut filled = vec![Vec3::ZERO; tile.area()];
+            renderer.fill(tile, &mut filled).unwrap();
+            assert!(filled.iter().zip(tile.pixels()).all(|(light, (x, y))| *light == renderer.pixel(x, y)));
+        }
+        assert!((6..18).contains(&empty), "{empty}");
     }
 }

@@ -1,6 +1,9 @@
 //! Assets: their bytes, their budget, and what is told about them.
 
-use crate::folder::{Folder, TETRAHEDRON};
+use crate::{
+    folder::{Folder, TETRAHEDRON},
+    render::decode,
+};
 
 /// A waved square of `side` x `side` x 2 triangles.
 pub fn waves(side: usize) -> String {
@@ -198,4 +201,25 @@ fn a_chip_gets_what_is_fastest_within_its_bytes() {
     assert!(error.contains("allow more bytes"), "{error}");
     let error = folder.refuse("bake waves.obj --target z80");
     assert!(error.contains("z80") && error.contains("rv32imc"), "{error}");
+}
+
+/// Normals take 2 bytes a vertex, and a picture of the asset is that of the smooth mesh but for what they are off.
+#[test]
+fn normals_are_baked_for_smooth_pictures() {
+    let folder = Folder::new();
+    folder.write("waves.obj", waves(20));
+    folder.succeed("bake waves.obj -o flat.hits");
+    folder.succeed("bake waves.obj -o smooth.hits --normals");
+    let bytes = |name| folder.read(name).len() as i64;
+    // 441 vertices, a count, an entry in the table and padding.
+    assert!((882..882 + 64).contains(&(bytes("smooth.hits") - bytes("flat.hits"))));
+    assert!(folder.succeed("info smooth.hits").contains("normals"));
+    let picture = |of: &str| {
+        folder.succeed(&format!("render {of} --size 64x48 --samples 1 -o picture.png"));
+        decode(&folder.read("picture.png")).2
+    };
+    let [flat, baked, smooth] = ["flat.hits", "smooth.hits", "waves.obj --smooth"].map(picture);
+    let off = |other: &[u8]| -> u64 { smooth.iter().zip(other).map(|(a, b)| u64::from(a.abs_diff(*b))).sum() };
+    assert!(off(&baked) * 5 < off(&flat), "{} {}", off(&baked), off(&flat));
+    folder.refuse("bake waves.obj -o none.hits --normals --lattice");
 }

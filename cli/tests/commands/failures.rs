@@ -167,3 +167,90 @@ fn the_command_line_itself_is_checked() {
     }
     assert_eq!(folder.run("").status.code(), Some(2));
 }
+
+/// What nobody can read, not even its owner.
+#[cfg(target_os = "linux")]
+#[test]
+fn unreadable_files_are_refused() {
+    let folder = folder();
+    refused(&folder, "/proc/self/mem", "/proc/self/mem");
+    folder.write("good.bin", [0; 8]);
+    for arguments in [
+        "cast tetrahedron.obj /proc/self/mem -o out.bin",
+        "compare tetrahedron.obj --rays /proc/self/mem",
+        "diff /proc/self/mem good.bin",
+        "diff good.bin /proc/self/mem",
+    ] {
+        assert!(folder.refuse(arguments).contains("/proc/self/mem"), "{arguments}");
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn figures_for_a_full_disk_are_refused() {
+    let folder = folder();
+    for option in ["--csv", "--plot"] {
+        let output = folder.run(&format!("compare tetrahedron.obj -n 100 --rounds 1 {option} /dev/full"));
+        assert_eq!(output.status.code(), Some(2), "{option}");
+        assert!(String::from_utf8(output.stderr).unwrap().ends_with("free some space or choose another disk\n"));
+    }
+}
+
+/// Every subcommand at work, with something to print.
+const PRINTERS: [&str; 6] = [
+    "render --size 8x8 --samples 1 --preview -o out.png",
+    "bake tetrahedron.obj -o out.hits",
+    "info tetrahedron.obj",
+    "cast tetrahedron.obj one.rays --csv",
+    "compare tetrahedron.obj -n 100 --rounds 1",
+    "diff good.bin good.bin",
+];
+
+#[test]
+fn nobody_who_listens_is_no_reason_to_panic() {
+    let folder = folder();
+    folder.write("good.bin", [0; 8]);
+    for printer in PRINTERS {
+        let mut child = folder.command(printer).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        drop(child.stdout.take());
+        drop(child.stderr.take());
+        assert_eq!(child.wait().unwrap().code(), Some(0), "{printer}");
+    }
+    for reader in READERS {
+        let mut child = folder.command(&reader.replace("{}", "missing.obj")).stderr(Stdio::piped()).spawn().unwrap();
+        drop(child.stderr.take());
+        assert_eq!(child.wait().unwrap().code(), Some(2), "{reader}");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_program_says_so_and_leaves_nothing() {
+    use std::{process::Command, thread::sleep, time::Duration};
+    let folder = folder();
+    folder.write_rays("many.rays", &[[0.2, 0.2, 5.0, 0.0, 0.0, -1.0_f32]; 400_000]);
+    let before = folder.names();
+    let long = [
+        "render --size 4000x4000 --samples 16 -o out.png",
+        "compare --growth=4M --csv out.csv",
+        // Most of its time goes into writing.
+        "cast tetrahedron.obj many.rays --csv -o out.csv",
+    ];
+    let mut interrupted = 0;
+    for (arguments, milliseconds) in long.into_iter().flat_map(|a| [100, 200, 400].map(|time| (a, time))) {
+        let child = folder.command(arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        sleep(Duration::from_millis(milliseconds));
+        assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+        let output = child.wait_with_output().unwrap();
+        let errors = String::from_utf8(output.stderr).unwrap();
+        if output.status.success() {
+            std::fs::remove_file(folder.path("out.csv")).unwrap();
+            continue;
+        }
+        interrupted += 1;
+        assert_eq!(output.status.code(), Some(130), "{arguments}: {errors}");
+        assert_eq!(errors, "hitscan: interrupted: what was begun is not written\n", "{arguments}");
+        assert_eq!(folder.names(), before, "{arguments}");
+    }
+    assert!(interrupted >= 6, "{interrupted}");
+}

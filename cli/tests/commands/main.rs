@@ -5,4 +5,6 @@ mod cast;
 mod compare;
 mod failures;
 mod folder;
+mod parts;
 mod render;
+mod world;

@@ -15,7 +15,7 @@ use crate::{answer::Answer, camera, knot};
 fn plans(triangles: usize) -> [(&'static str, Plan); 5] {
     [
         // Within 24 bytes per triangle, of which its corners and vertices take 9.
-        ("lattice-kdtree-compact small", Plan::CompactKdTree(kdtree::Options::small().fit(triangles * 14))),
+        ("lattice-kdtree-compact small", Plan::CompactKdTree(kdtree::Options::small().fit(triangles * 59 / 4))),
         ("lattice-kdtree-compact balanced", Plan::CompactKdTree(kdtree::Options::balanced())),
         ("lattice-dual-split small", Plan::DualSplit(dualsplit::Options::small())),
         ("lattice-dual-split balanced", Plan::DualSplit(dualsplit::Options::balanced())),

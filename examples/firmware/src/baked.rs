@@ -64,4 +64,19 @@ pub struct Contestant {
     pub baked: Baked,
 }
 
+/// A function of a structure's type, for the structure that a contestant is named after.
+#[macro_export]
+macro_rules! for_structure {
+    ($contestant:expr, $function:ident) => {
+        match $contestant.name.split(' ').next() {
+            Some("grid") => $function::<hitscan::Grid>,
+            Some("octree") => $function::<hitscan::Octree>,
+            Some("kdtree") => $function::<hitscan::KdTree>,
+            Some("kdtree-compact") => $function::<hitscan::CompactKdTree>,
+            Some("bvh") => $function::<hitscan::Bvh>,
+            _ => $function::<hitscan::DualSplit>,
+        }
+    };
+}
+
 include!(concat!(env!("OUT_DIR"), "/baked.rs"));

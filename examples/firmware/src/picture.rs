@@ -7,7 +7,7 @@ use embedded_graphics::{
     text::Text,
 };
 use hitscan::{
-    display::{Stored, Strip},
+    display::{Packed, Strip},
     glam::Vec3,
     render::{Camera, Caster, Channels, Light, Ordered, Renderer},
 };
@@ -41,7 +41,7 @@ pub fn binary<S: Caster, E>(scene: &S, show: impl FnMut(&[BinaryColor]) -> Resul
 }
 
 /// Draws a picture of `size` before a `sky`, dithered, with a label in `ink`.
-fn draw<S: Caster, C: Channels + PixelColor + Stored<Shown = C>, E>(
+fn draw<S: Caster, C: Channels + PixelColor + Packed<Color = C>, E>(
     scene: &S,
     size: Size,
     sky: [Vec3; 2],

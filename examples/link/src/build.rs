@@ -3,11 +3,12 @@
 use core::hint::black_box;
 
 use hitscan::{
-    Accelerator, Arena, Bvh, Instance, LatticeMesh, List, Mesh, Primitives, Traversal,
+    Accelerator, Arena, Bvh, DualSplit, Instance, LatticeMesh, List, Mesh, Primitives, Traversal,
     accel::{Counted, Hierarchy, Inside, Mailbox, Structure},
     asset::{Asset, Stored},
     from_fn,
-    primitives::{Renumbering, Spheres},
+    geometry::Bundle,
+    primitives::{Renumbering, Smooth, Spheres},
     render::Materials,
 };
 
@@ -36,7 +37,9 @@ fn with<P: Primitives, E>(primitives: &Result<P, E>) {
     black_box((plan.words(word() as usize), plan.kind()));
     arena.frame(|arena| any(Structure::build(primitives, arena, &plan)));
     any(Structure::build(&(primitives, primitives), &mut arena, &plan));
-    if let Ok(structure) = Structure::build(primitives as &dyn Primitives, &mut arena, &plan) {
+    #[cfg(feature = "objects")]
+    let primitives = primitives as &dyn Primitives;
+    if let Ok(structure) = Structure::build(primitives, &mut arena, &plan) {
         one(&structure, &mut arena);
     }
     black_box(arena.available());
@@ -68,6 +71,13 @@ fn walk<A: Accelerator>(structure: &A) {
     let (mut walk, mut budget) = (structure.traverse(&ray), word());
     while let Some(leaf) = walk.next_leaf(&ray, float()) {
         black_box(leaf.last());
+    }
+    if let Some(bundle) = Bundle::around([*ray.ray(), *ray.ray()]) {
+        let entries = structure.enter(&bundle);
+        for entry in entries.iter() {
+            black_box(structure.traverse_from(entry, &ray).next_leaf(&ray, float()).is_some());
+        }
+        black_box(entries.is_empty());
     }
     black_box(matches!(walk.step(&ray, float(), &mut budget), hitscan::accel::Step::Done));
 }
@@ -108,10 +118,12 @@ fn assets() {
         read::<Mesh<'_>>(&asset);
         read::<LatticeMesh<'_>>(&asset);
         read::<Spheres<'_>>(&asset);
+        read::<Smooth<'_>>(&asset);
         read::<Materials<'_>>(&asset);
         read::<Renumbering<'_>>(&asset);
         read::<&[Instance]>(&asset);
         black_box(asset.scene::<Structure<'_>, Mesh<'_>>().is_ok());
+        black_box(asset.lattice_scene::<DualSplit<'_>, LatticeMesh<'_>>().is_ok());
     }
 }
 

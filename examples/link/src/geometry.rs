@@ -3,11 +3,12 @@
 use core::hint::black_box;
 
 use hitscan::{
-    geometry::{Axis, Bounding, BoundingVolume, Obb, Transform, Triangle, Volume},
+    Ray,
+    geometry::{Axis, Bounding, BoundingVolume, Bundle, Lattice, Obb, Sphere, Transform, Triangle, Volume},
     glam::Vec3,
 };
 
-use crate::input::{aabb, float, matrix, ray, some, sphere, vector};
+use crate::input::{aabb, float, matrix, ray, some, sphere, vector, word};
 
 /// Calls everything in `hitscan::geometry`.
 pub fn all() {
@@ -15,6 +16,7 @@ pub fn all() {
     triangles();
     spheres();
     transforms();
+    lattices();
     volumes(some(vector, &mut None));
 }
 
@@ -49,7 +51,17 @@ fn transforms() {
         black_box(inverse.factor());
         black_box((inverse.point(vector()), inverse.vector(vector()), inverse.normal(vector())));
         black_box((transform.ray(&ray()), transform.bounds(&aabb()), ray().at(float())));
+        black_box((transform.ray_back(&ray()), transform.translation()));
+        black_box(Ray::between(vector(), vector()));
     }
+}
+
+fn lattices() {
+    let lattice = Lattice::over(&aabb(), [word(), word(), word()]);
+    let axis = Axis::of_largest(vector());
+    black_box((lattice.above(axis, float()), lattice.below(axis, float()), lattice.last(axis)));
+    black_box(lattice.position(axis, word()));
+    black_box(Bundle::around([ray(), ray()]).map(|bundle| bundle.entry(&aabb())));
 }
 
 fn volumes(points: &[Vec3]) {
@@ -57,6 +69,9 @@ fn volumes(points: &[Vec3]) {
     for kind in Bounding::ALL {
         black_box((kind.name(), kind.around(points.clone())));
     }
+    black_box((Sphere::around_barycenter(points.clone()), Sphere::around_box_center(points.clone())));
+    black_box((Sphere::ritter(points.clone()), Sphere::welzl(points.clone())));
+    black_box((Obb::pca(points.clone()), Obb::dito(points.clone())));
     let obb = Obb::new(vector(), matrix(), vector());
     black_box((obb.is_valid(), obb.contains(vector()), obb.half_area()));
     let two = (BoundingVolume::Sphere(sphere()), (BoundingVolume::Aabb(aabb()), BoundingVolume::Obb(obb)));

@@ -7,6 +7,7 @@
 mod build;
 mod geometry;
 mod input;
+mod own;
 mod plan;
 mod query;
 mod render;

@@ -5,13 +5,17 @@ use core::hint::black_box;
 use hitscan::{
     Accelerator, Arena, Hit, Instance, Instances, LatticeMesh, LatticeScene, List, Mesh, Primitives, Scene,
     accel::{Bounded, Hierarchy, LatticeAccelerator, Structure},
+    asset::Asset,
     error::BuildError,
-    geometry::Transform,
-    primitives::{Indices, LatticeTriangles, Order, Proximity, Renumbering, Reordered, Spheres},
+    geometry::{Bundle, Transform},
+    primitives::{
+        Indices, LatticeTriangles, Normals, Order, Proximity, Renumbering, Reordered, Sides, Smooth, Spheres, Surface,
+    },
 };
 
 use crate::{
     input::{aabb, float, matrix, ray, some, sphere, vector, word},
+    own::{Own, asked},
     plan,
 };
 
@@ -22,7 +26,22 @@ pub fn all() {
     let mesh = Mesh::new(some(vector, &mut vertices), some(corners, &mut triangles));
     let Ok(mesh) = mesh.and_then(|mesh| mesh.with_masks(some(word, &mut masks))) else { return };
     let Ok(spheres) = Spheres::new(some(sphere, &mut balls)) else { return };
-    with(&mesh);
+    with(&mesh.with_sides(sides()));
+    let smooth = Smooth::new(mesh, mesh.vertices());
+    if let Ok(list) = List::new(&smooth) {
+        cast(Scene::new(list, smooth));
+    }
+    black_box((smooth.mesh().len(), Normals::packed(vector())));
+    let mut words = None;
+    let normals = Asset::from_words(some(word, &mut words)).ok().and_then(|asset| asset.read::<Normals<'_>>().ok());
+    if let Some(normals) = normals {
+        black_box((normals.len(), normals.is_empty(), normals.get(word())));
+        let smooth = Smooth::packed(mesh, normals);
+        if let Ok(list) = List::new(&smooth) {
+            cast(Scene::new(list, smooth));
+        }
+    }
+    with(&Own);
     lattice(mesh.indices());
     with(&spheres);
     with(&(mesh, spheres));
@@ -32,13 +51,20 @@ pub fn all() {
         && let Ok(reordered) = Reordered::new(mesh, numbers)
     {
         with(&reordered);
+        black_box(reordered.inner().len());
     }
+}
+
+fn sides() -> Sides {
+    if word() == 0 { Sides::Both } else { Sides::Front }
 }
 
 fn lattice(indices: Indices<'_>) {
     let mut numbers = None;
     let numbers = some(|| [word() as u16, word() as u16, word() as u16], &mut numbers);
     if let Ok(mesh) = LatticeMesh::new(&aabb(), numbers, indices) {
+        let mesh = mesh.with_sides(sides());
+        black_box(mesh.sides());
         black_box(mesh.positions().last());
         with(&mesh);
         whole(List::new(&mesh), mesh);
@@ -55,13 +81,16 @@ fn lattice(indices: Indices<'_>) {
 fn whole<A: LatticeAccelerator>(structure: Result<A, BuildError>, mesh: impl LatticeTriangles) {
     let Ok(structure) = structure else { return };
     let Ok(scene) = LatticeScene::new(structure, mesh) else { return };
-    black_box((scene.closest_hit(&ray()), scene.any_hit(&ray())));
-    for ray in scene.space().rays(vector(), vector(), vector(), word()).flatten() {
+    black_box((scene.closest_hit(&ray()), scene.any_hit(&ray()), scene.accelerator().primitives()));
+    let rays = scene.space().rays(vector(), vector(), vector(), word());
+    black_box(rays.size_hint());
+    for ray in rays.flatten() {
         black_box((scene.closest_hit_along(&ray), scene.any_hit_along(&ray)));
     }
 }
 
 fn with<P: Proximity>(primitives: &P) {
+    asked(primitives);
     if let Ok(list) = List::new(primitives) {
         cast(Scene::new(list, primitives));
         cast(Scene::new(Bounded::new((sphere(), list.bounds()), list), primitives));
@@ -80,8 +109,11 @@ fn with<P: Proximity>(primitives: &P) {
 
 fn placed<A: Hierarchy, P: Proximity>(scene: Scene<A, P>) {
     let Ok(transform) = Transform::new(matrix(), vector()) else { return };
-    let (scenes, mut places) = ([scene], [Instance::new(word(), transform)]);
+    let (scenes, mut places) = ([scene], [Instance::new(word(), transform).with_mask(word())]);
     let Ok(instances) = Instances::place(black_box(&scenes), black_box(&mut places)) else { return };
+    black_box(instances.locate(word()));
+    let [place] = instances.placed() else { return };
+    black_box((place.scene(), place.first(), place.transform().inverse()));
     if let Ok(similar) = instances.similar()
         && let Ok(list) = List::new(&similar)
     {
@@ -105,12 +137,19 @@ fn cast<A: Accelerator, P: Primitives, E>(scene: Result<Scene<A, P>, E>) {
     black_box(scene.closest_hit_where(&ray(), keep));
     black_box(scene.any_hit(&ray()));
     black_box(scene.any_hit_where(&ray(), keep));
+    let mut last = Some(word());
+    black_box((scene.any_hit_near(&ray(), &mut last), last));
     scene.hits(&ray()).for_each(|hit| _ = black_box(hit));
     let mut hits: heapless::Vec<Hit, 4> = heapless::Vec::new();
     scene.nearest_hits(&ray(), &mut hits);
     let mut query = scene.begin(&ray());
     black_box((query.advance(word()), query.advance(word())));
     let hit = black_box(Hit { t: 0.0, primitive: word() });
+    black_box((hit.precedes(&hit), scene.accelerator().bounds(), Surface::facing(&ray(), float())));
+    if let Some(bundle) = Bundle::around([ray(), ray()]) {
+        let entries = scene.enter(&bundle);
+        black_box(scene.closest_hit_from(&entries, &ray()));
+    }
     let surface = scene.surface(&ray(), &hit);
     black_box((surface.start_towards(vector()), surface.normal_towards_ray(), scene.bounds(), hits));
 }

@@ -3,12 +3,14 @@
 use core::hint::black_box;
 
 use embedded_graphics_core::{
-    geometry::Point,
+    Pixel,
+    draw_target::DrawTarget,
+    geometry::{Dimensions, Point},
     pixelcolor::{BinaryColor, Gray4, Rgb565},
 };
 use hitscan::{
     List, Scene,
-    display::{self, Stored, Strip},
+    display::{self, Packed, Strip},
     primitives::Spheres,
     render::{
         Camera, Caster, Channels, Diffusion, Dither, Light, Material, Materials, Nearest, Numbers, Ordered, Renderer,
@@ -43,7 +45,20 @@ pub fn all() {
         let mut pixels = [0_u16; 64];
         black_box(renderer.fill(tile, &mut pixels).is_ok());
         black_box(pixels);
+        black_box(renderer.colors::<u16>(tile).last());
+        black_box(renderer.fill_dithered(tile, &mut pixels, Ordered).is_ok());
+        black_box((renderer.may_show(&tile, &aabb()), tile.area(), tile.parts(word(), word()).last()));
+        black_box(renderer.patch(tile).pixel(word(), word()));
+        black_box(renderer.refined(tile, &pixels, |a, b| a.abs_diff(*b) > 3).last());
     }
+    let mut rough = renderer.progressive();
+    black_box(rough.step(word(), |tile, color| _ = black_box((tile, color))));
+    black_box(rough.next());
+    let tile = Tile { x: word(), y: word(), width: word(), height: word() };
+    let camera = camera();
+    black_box((camera.eye(), camera.forward(), camera.up(), camera.bundle(&tile, word(), word())));
+    let light = light();
+    black_box((light.color(), light.direction_from(vector()), light.shadow_ray(vector())));
     black_box(renderer.pixel(word(), word()));
     dithered(&renderer, Nearest);
     dithered(&renderer, Ordered);
@@ -52,6 +67,8 @@ pub fn all() {
     diffusion.restart();
     dithered(&renderer, diffusion);
     sensor::sees(&scene);
+    #[cfg(feature = "objects")]
+    sensor::sees(&scene as &dyn Caster);
 }
 
 /// Pictures for displays of few colours, in memory and drawn.
@@ -65,10 +82,12 @@ fn dithered<S: Caster>(renderer: &Renderer<'_, S>, mut dither: impl Dither) {
     drawn::<BinaryColor, _>(renderer, &mut dither, BinaryColor::Off);
 }
 
-fn drawn<P: Stored<Shown: Channels>, S: Caster>(renderer: &Renderer<'_, S>, dither: impl Dither, pixel: P) {
+fn drawn<P: Packed<Color: Channels>, S: Caster>(renderer: &Renderer<'_, S>, dither: impl Dither, pixel: P) {
     let mut pixels = [pixel; 64];
     let tile = Tile { x: word(), y: word(), width: word(), height: word() };
     let mut strip = Strip::new(tile, black_box(pixels.as_mut_slice()));
+    black_box(strip.bounding_box());
+    black_box(strip.draw_iter(black_box(None::<Pixel<P::Color>>)).is_ok());
     let at = Point::new(word() as i32, word() as i32);
     black_box(display::draw(renderer, &mut strip, at, (word(), word()), dither).is_ok());
 }

@@ -10,7 +10,7 @@ use hitscan::{
 use crate::input::{float, matrix, some, vector, word};
 
 /// Lets a sensor see `scene` from anywhere.
-pub fn sees(scene: &dyn Caster) {
+pub fn sees(scene: &(impl Caster + ?Sized)) {
     let mut beams = None;
     let sensor = RangeSensor::new(some(vector, &mut beams));
     let sensor = sensor.in_units_of(float()).within(float(), float()).seeing(word());

@@ -10,7 +10,7 @@ use embedded_graphics::{
 };
 use embedded_graphics_simulator::SimulatorDisplay;
 use hitscan::{
-    display::{Stored, Strip},
+    display::{Packed, Strip},
     render::{Channels, Dither},
 };
 
@@ -27,7 +27,7 @@ pub fn show<C>(
     [ink, paper]: [C; 2],
 ) -> Result<SimulatorDisplay<C>, Box<dyn Error>>
 where
-    C: Channels + PixelColor + Stored<Shown = C>,
+    C: Channels + PixelColor + Packed<Color = C>,
 {
     let size = Size::new(picture.width(), picture.height());
     let mut display = SimulatorDisplay::with_default_color(size, paper);

@@ -158,7 +158,7 @@ fn terrain() -> Model {
             triangles.extend([[a, b, a + 1], [a + 1, b, b + 1]]);
         }
     }
-    let normals = crate::smooth::normals(&points, &triangles);
+    let normals = crate::normals::normals(&points, &triangles);
     let points: Vec<(Vec3, Vec3)> = points.into_iter().zip(normals).collect();
     let grass = Material::matte(Vec3::new(0.23, 0.30, 0.10));
     let water = Material::matte(Vec3::new(0.02, 0.10, 0.14)).with_highlights(0.8, 200.0).with_reflectivity(0.45);

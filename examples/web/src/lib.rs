@@ -11,10 +11,10 @@ mod heat;
 mod lighting;
 mod message;
 mod model;
+mod normals;
 mod order;
 mod picture;
 mod plan;
-mod smooth;
 mod view;
 mod world;
 

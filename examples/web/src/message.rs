@@ -1,6 +1,6 @@
 use hitscan::{glam::Vec3, render::Material};
 
-use crate::{Model, smooth};
+use crate::{Model, normals::normals};
 
 /// A model as words, as the page's readers of files make it: a header, then four lists, one after the other.
 ///
@@ -26,7 +26,7 @@ impl Message {
             return Err("The file holds no triangles.".to_owned());
         }
         hitscan::Mesh::new(&model.vertices, model.triangles.as_slice()).map_err(|error| error.to_string())?;
-        let normals = smooth::normals(&model.vertices, &model.triangles);
+        let normals = normals(&model.vertices, &model.triangles);
         Ok(Model { normals, ..model }.on_the_ground())
     }
 

@@ -5,11 +5,11 @@ use hitscan::{
     accel::{Accelerator, Counted, Structure},
     geometry::Aabb,
     glam::{Quat, Vec3},
-    primitives::{Spheres, Surface},
+    primitives::{Smooth, Spheres, Surface},
     render::{Camera, Caster, Materials, Numbers, Renderer},
 };
 
-use crate::{Model, View, lighting::Lighting, plan, smooth::Smooth};
+use crate::{Model, View, lighting::Lighting, plan};
 
 /// A model under a structure, lit.
 #[expect(missing_debug_implementations, reason = "a scene is too much to print")]

@@ -4,7 +4,7 @@ use super::{
 };
 use crate::{
     accel::{Entry, Leaf, Step, Traversal, leaf::References, segment::Segment, slope::Slopes},
-    geometry::{Axis, PreparedRay, beyond, slack},
+    geometry::{Axis, PreparedRay, beyond},
     math::{greatest, least},
 };
 
@@ -48,8 +48,8 @@ impl<'a> BvhTraversal<'a> {
     pub(super) fn within(bvh: &Bvh<'a>, entry: &Entry, ray: &PreparedRay) -> Self {
         let mut walk = Self::new(bvh, ray);
         if walk.next.is_some() {
-            let part = Segment::within(&entry.bounds, entry.node, ray, slack(ray.ray().t_min));
-            walk.next = part.map(|part| Cell { link: Link::from_bits(part.node), enter: part.enter });
+            walk.next =
+                Segment::of_entry(entry, ray).map(|part| Cell { link: Link::from_bits(part.node), enter: part.enter });
         }
         walk
     }

@@ -4,8 +4,8 @@ use super::{DualSplit, MAX_DEPTH, node::Head};
 use crate::{
     accel::{
         LatticeAccelerator, LatticeWalk, Leaf,
+        lattice_segment::{LatticeSegment, LatticeWaiting},
         leaf::References,
-        on_lattice::{LatticeSegment, LatticeWaiting},
     },
     geometry::LatticeRay,
 };

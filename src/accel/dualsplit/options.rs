@@ -8,7 +8,7 @@ pub enum Method {
     /// shortest walks, 16 bytes of scratch per primitive.
     Thorough,
     /// In the words of the tree itself and a kilobyte beside them, several times as fast: for devices. Nodes take at most
-    /// 4.5 bytes per primitive.
+    /// 4.5 bytes per primitive, or as many as leaves of fewer than nine need.
     Quick,
 }
 

@@ -6,16 +6,18 @@ use crate::{
         segment::{Segment, Waiting},
         slope::Slopes,
     },
-    geometry::{PreparedRay, beyond, slack},
+    geometry::{PreparedRay, beyond},
     math::{greatest, least},
 };
 
 /// The walk through a [`DualSplit`]: front to back, a stack of segments that wait.
 #[derive(Clone, Debug)]
+#[repr(C)]
 pub struct DualSplitTraversal<'a> {
+    /// First, where its address is the walk's own: nothing is added for each node.
+    slopes: Slopes,
     nodes: &'a [u32],
     references: References<'a>,
-    slopes: Slopes,
     /// The cell to go on with: the whole at first, after a pause the one before which it was; none behind a leaf.
     next: Option<Segment>,
     /// Far children, the nearest on top.
@@ -28,7 +30,7 @@ impl<'a> DualSplitTraversal<'a> {
     pub(super) fn within(tree: &DualSplit<'a>, entry: &Entry, ray: &PreparedRay) -> Self {
         let mut walk = Self::new(tree, ray);
         if walk.next.is_some() {
-            walk.next = Segment::within(&entry.bounds, entry.node, ray, slack(ray.ray().t_min));
+            walk.next = Segment::of_entry(entry, ray);
         }
         walk
     }
@@ -89,19 +91,20 @@ impl<'a> DualSplitTraversal<'a> {
             }
             // The near child ends at the plane in the lower half, the far one begins at the upper.
             let descended = head.is_descended(ray.descending);
-            let (planes, near, far) =
-                if descended { (planes.rotate_left(16), head.right(), child) } else { (planes, child, head.right()) };
+            let planes = if descended { planes.rotate_left(16) } else { planes };
+            let near = || if descended { head.right() } else { child };
+            let far = || if descended { child } else { head.right() };
             let exit = slope.exit(planes & 0xffff);
             if exit < cell.enter {
                 // The far child: as nearly all rays that miss the near one meet it, its plane need not be looked at.
-                cell.node = far;
+                cell.node = far();
                 continue;
             }
             let entry = slope.entry(planes >> 16);
             if !(entry > cell.exit) {
-                self.waiting.push(Segment { node: far, enter: greatest(entry, cell.enter), exit: cell.exit });
+                self.waiting.push(Segment { node: far(), enter: greatest(entry, cell.enter), exit: cell.exit });
             }
-            cell = Segment { node: near, enter: cell.enter, exit: least(exit, cell.exit) };
+            cell = Segment { node: near(), enter: cell.enter, exit: least(exit, cell.exit) };
         }
     }
 }

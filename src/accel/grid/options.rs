@@ -53,7 +53,7 @@ impl Options {
     }
 
     /// Quickly built where it stands, for what moves: no doubles are computed, and the arena needs no more words than the
-    /// grid will have. 11 to 25 bytes per triangle.
+    /// grid will have, from about 5,000 primitives on two bytes more per cell. 11 to 25 bytes per triangle.
     #[must_use]
     pub const fn quick() -> Self {
         Self { density: 1.0, form: Form::Full, clip: false, ..Self::balanced() }

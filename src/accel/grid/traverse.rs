@@ -5,7 +5,7 @@ use super::{
     met::Met,
 };
 use crate::{
-    accel::{Step, Traversal, leaf::References},
+    accel::{Step, Traversal, leaf::References, segment::Segment},
     geometry::{Aabb, Axis, AxisView, Lattice, PreparedRay, beyond, slack},
     math::{greatest, least},
 };
@@ -54,7 +54,7 @@ struct Tie {
 }
 
 impl<'a> GridTraversal<'a> {
-    /// The walk along `ray`, before its beginning.
+    /// A walk before its beginning, along whichever ray is given to it.
     #[inline(always)]
     pub(super) fn new(grid: &Grid<'a>) -> Self {
         // The first cells are found where this is when it is walked: it need not be moved then.
@@ -87,13 +87,8 @@ impl<'a> GridTraversal<'a> {
     #[inline(never)]
     fn begin(&mut self, ray: &PreparedRay) {
         self.begins = false;
-        let Some((enter, exit)) = self.bounds.interval(ray) else { return };
-        let enter = greatest(enter, ray.ray().t_min);
-        let exit = least(exit, beyond(ray.ray().t_max));
-        if enter > exit {
-            return;
-        }
-        let slack = slack(enter);
+        let slack = slack(ray.ray().t_min);
+        let Some(Segment { enter, exit, .. }) = Segment::within(&self.bounds, 0, ray, slack) else { return };
         (self.enter, self.exit, self.slack, self.is_new) = (enter, exit, slack, true);
         // Twice the widening of exits.
         self.margin = greatest(enter.abs(), exit.abs()) * (1.0 / 32768.0) + 2.0 * slack;

@@ -6,6 +6,7 @@
 
 mod build;
 mod compact;
+mod enter;
 mod form;
 mod node;
 mod open;
@@ -20,6 +21,7 @@ pub use options::{Options, Split};
 pub use traverse::KdTraversal;
 
 use self::{
+    enter::{Opened, Planes},
     form::Form,
     node::{Kind, Node, Side},
 };
@@ -179,7 +181,15 @@ impl<'a> Accelerator for KdTree<'a> {
 
     /// One entry: a second one costs each ray more than it spares.
     fn enter(&self, bundle: &Bundle) -> Entries {
-        Entries::find(self, bundle, 1)
+        enter::entries(self.bounds, bundle, |node| {
+            Some(match self.nodes.get(node as usize)?.kind() {
+                Kind::Inner { axis, position, right, empty } => {
+                    let planes = Planes { axis, begin: position, end: position };
+                    Opened::Parted { planes, left: node + 1, right, empty }
+                }
+                Kind::Leaf { count, .. } => Opened::Leaf { is_empty: count == 0 },
+            })
+        })
     }
 
     #[inline]
@@ -205,7 +215,7 @@ impl<'a> Hierarchy for KdTree<'a> {
                 let above = (empty != Some(Side::Right)).then_some(Cell { bounds: above, node: right });
                 Inside::Cells([below, above])
             }
-            Kind::Leaf { count: 1, .. } => Inside::Leaf(Leaf::of(References::wide(node.payload()), 0, 1)),
+            Kind::Leaf { first, count: 1 } => Inside::Leaf(Leaf::of(References::IDENTITY, first, 1)),
             Kind::Leaf { first, count } => Inside::Leaf(Leaf::of(self.references, first, count)),
         }
     }

@@ -107,12 +107,6 @@ impl Node {
         self.payload
     }
 
-    /// A leaf's only primitive, as a list of references.
-    #[inline(always)]
-    pub(crate) const fn payload(&self) -> &[u32] {
-        core::slice::from_ref(&self.payload)
-    }
-
     /// All of it at once, for who is not in a hurry.
     pub(crate) const fn kind(self) -> Kind {
         let axis = match self.axis_or_leaf() {

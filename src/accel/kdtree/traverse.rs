@@ -64,7 +64,8 @@ impl<'a> KdTraversal<'a> {
             let view = &ray.views[axis as usize];
             let descended = node.is_descended(ray.descending);
             let (left, right) = (cell.node + 1, node.number());
-            let (near, far) = if descended { (right, left) } else { (left, right) };
+            let near = || if descended { right } else { left };
+            let far = || if descended { left } else { right };
             let distance = node.position() - view.origin;
             // Parameters are computed where they are needed. Written so that NaN, the ray in the plane, visits both.
             if node.is_cut() {
@@ -85,16 +86,16 @@ impl<'a> KdTraversal<'a> {
             }
             let entry = distance * view.entry;
             if entry > cell.exit {
-                cell.node = near;
+                cell.node = near();
                 continue;
             }
             let exit = distance * view.exit + slack;
             if exit < cell.enter {
-                cell.node = far;
+                cell.node = far();
             } else {
                 let enter = greatest(entry, cell.enter);
-                self.waiting.push(Segment { node: far, enter, exit: cell.exit });
-                cell = Segment { node: near, enter: cell.enter, exit: least(exit, cell.exit) };
+                self.waiting.push(Segment { node: far(), enter, exit: cell.exit });
+                cell = Segment { node: near(), enter: cell.enter, exit: least(exit, cell.exit) };
             }
         }
     }

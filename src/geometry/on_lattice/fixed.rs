@@ -26,9 +26,7 @@ impl Scaled {
     /// The product, of 28 bits or more in magnitude: for sums.
     #[inline]
     pub(super) const fn roughly_times(self, factor: Self) -> Self {
-        if self.mantissa == 0 {
-            return self;
-        }
+        // The exponent of 0 stays below all others.
         Self { mantissa: high(self.mantissa, factor.mantissa), exponent: self.exponent + factor.exponent + 32 }
     }
 
@@ -52,11 +50,17 @@ impl Scaled {
     }
 }
 
+/// `x` · 2^-`by`, rounded down, for `by` ≥ 0: a fraction of [`shifted`].
+#[inline(always)]
+pub(super) const fn cut(x: i32, by: i32) -> i32 {
+    x >> if by > 31 { 31 } else { by }
+}
+
 /// `x` · 2^`by`, rounded down; what does not fit becomes the nearest that does.
 #[inline]
 pub(super) const fn shifted(x: i32, by: i32) -> i32 {
     if by <= 0 {
-        return x >> if by < -31 { 31 } else { -by };
+        return cut(x, -by);
     }
     if by < 32 {
         let moved = x << by;

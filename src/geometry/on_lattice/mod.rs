@@ -1,7 +1,7 @@
 //! Rays and triangles in whole numbers, for chips that have no floating point.
 //!
 //! Coordinates are numbers of a [`Lattice`](super::Lattice)'s planes, 0 to 65,535 along each axis. After a ray is made,
-//! everything is done in integers of 32 bits, in products that fit them too: the same bits everywhere, and on a Cortex-M0
+//! everything but the last step, from a depth to `t`, is done in integers of 32 bits, in products that fit them too: the same bits everywhere, and on a Cortex-M0
 //! an instruction each. Only triangles larger than an eighth of the lattice take products of 64 bits.
 //!
 //! # The ray

@@ -4,7 +4,7 @@ use crate::geometry::Axis;
 pub(super) const LAST: i32 = 0xffff;
 
 /// The number of the middle plane.
-const MIDDLE: i32 = 0x8000;
+pub(super) const MIDDLE: i32 = 0x8000;
 
 /// What a plane across a minor axis may be off by, in its axis's steps, with something to spare:
 /// 1/4 for the rounding of corners, 1 for what is cut off the crossing of the middle plane, 4 for slopes below 2^-13,
@@ -54,8 +54,7 @@ pub(crate) struct View {
 }
 
 impl View {
-    /// The depths at which the ray enters what is behind a plane at the latest and leaves what is before it at the earliest,
-    /// as far as the plane's number can be trusted.
+    /// The depths at which the ray enters what is behind a plane at the earliest and leaves what is before it at the latest.
     #[inline(always)]
     pub(crate) const fn depths(&self, plane: u32) -> (i32, i32) {
         let depth = (plane as i32).wrapping_mul(self.factor);

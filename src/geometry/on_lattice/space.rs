@@ -2,10 +2,10 @@ use glam::Vec3;
 
 use super::{
     LatticeRay, LatticeRays,
-    fixed::{Scaled, high, reciprocal, shifted},
-    ray::{Interval, LAST, Line},
+    fixed::{Scaled, cut, high, reciprocal, shifted},
+    ray::{Interval, LAST, Line, MIDDLE},
 };
-use crate::geometry::{Aabb, Axis, Lattice, MAX_COORDINATE, Ray};
+use crate::geometry::{Aabb, Axis, Lattice, Ray, in_range};
 
 /// The coordinates in which the planes of a lattice of 16 bits are whole numbers: they turn rays into [`LatticeRay`]s.
 ///
@@ -40,9 +40,6 @@ pub(super) struct Planes {
     pub(super) unit: i32,
 }
 
-/// The number of the middle plane.
-const MIDDLE: i32 = 0x8000;
-
 impl LatticeSpace {
     /// The space of the lattice over `frame`; `None` if the box is not valid, or so far from 0 for its size that the
     /// lattice's planes are not all different in `f32`.
@@ -70,7 +67,7 @@ impl LatticeSpace {
     /// Made in integers, too, but for three differences and, where the interval has them, ends other than 0 and infinity.
     #[must_use]
     pub fn ray(&self, ray: &Ray) -> Option<LatticeRay> {
-        if !(is_in_range(ray.origin) && is_in_range(ray.direction) && ray.t_min <= ray.t_max) {
+        if !(in_range(ray.origin) && in_range(ray.direction) && ray.t_min <= ray.t_max) {
             return None;
         }
         let (start, speed) = (self.start(ray.origin), self.speed(ray.direction));
@@ -78,7 +75,7 @@ impl LatticeSpace {
         let scale = &self.axes[line.major as usize];
         let (origin, direction) = (line.major.of(ray.origin), line.major.of(ray.direction));
         let depth = |t: f32| {
-            // Magnitudes below 0 are 0 twice.
+            // Twice the magnitude's bits: 0 of either sign, most rays' beginning, needs no arithmetic.
             if t.to_bits() << 1 == 0 {
                 return line.depth_of(&start);
             }
@@ -108,7 +105,7 @@ impl LatticeSpace {
     #[must_use]
     pub fn rays(&self, origin: Vec3, first: Vec3, step: Vec3, count: u32) -> LatticeRays<'_> {
         let last = first + step * count as f32;
-        let is_valid = is_in_range(origin) && is_in_range(first) && is_in_range(step) && is_in_range(last);
+        let is_valid = in_range(origin) && in_range(first) && in_range(step) && in_range(last);
         let (first, step, last) = (self.speed(first), self.speed(step), self.speed(last));
         // In a unit in which neither end overflows.
         let unit = first.unit.max(last.unit).max(step.unit);
@@ -117,8 +114,8 @@ impl LatticeSpace {
             count: if is_valid { count } else { 0 },
             origin,
             start: self.start(origin),
-            speed: Planes { along: first.along.map(|speed| shifted(speed, first.unit - unit)), unit },
-            step: step.along.map(|speed| shifted(speed, step.unit - unit)),
+            speed: Planes { along: first.along.map(|speed| cut(speed, unit - first.unit)), unit },
+            step: step.along.map(|speed| cut(speed, unit - step.unit)),
         }
     }
 
@@ -142,7 +139,7 @@ impl LatticeSpace {
         let [x, y, z] = [along(Axis::X), along(Axis::Y), along(Axis::Z)];
         // With a bit of headroom for what is added or taken off.
         let unit = x.exponent.max(y.exponent).max(z.exponent) + 1;
-        Planes { along: [x.in_units(unit), y.in_units(unit), z.in_units(unit)], unit }
+        Planes { along: [x, y, z].map(|length| cut(length.mantissa, unit - length.exponent)), unit }
     }
 
     /// The ray along a line from `origin`, for t from 0, seeing everything.
@@ -160,6 +157,9 @@ impl LatticeSpace {
     }
 }
 
+/// The two axes behind each, in cyclic order; looked up, so that there is one way for all and not three.
+const MINOR: [[Axis; 2]; 3] = [[Axis::Y, Axis::Z], [Axis::Z, Axis::X], [Axis::X, Axis::Y]];
+
 /// The line from `start` along `speed`, whatever that is counted in.
 #[inline(always)]
 fn line(start: &Planes, speed: [i32; 3]) -> Option<Line> {
@@ -171,7 +171,7 @@ fn line(start: &Planes, speed: [i32; 3]) -> Option<Line> {
     let inverse = reciprocal(((fast.unsigned_abs() << shift) & i32::MAX as u32) as i32);
     // Not so small that the point is beyond the number.
     let unit = start.unit.max(-30);
-    let at = |axis: Axis| shifted(start.along[axis as usize], start.unit - unit);
+    let at = |axis: Axis| cut(start.along[axis as usize], unit - start.unit);
     let way = at(major);
     let cross = |axis: Axis| {
         // In 2^-30, 1 at most.
@@ -182,7 +182,8 @@ fn line(start: &Planes, speed: [i32; 3]) -> Option<Line> {
         let middle = shifted(middle, unit + LatticeRay::FRACTION);
         (middle.saturating_add(MIDDLE << LatticeRay::FRACTION), (slope + (1 << 15)) >> 16)
     };
-    let crossings = [cross(major.next()), cross(major.next().next())];
+    let [first, second] = MINOR[major as usize];
+    let crossings = [cross(first), cross(second)];
     Some(Line { major, descends, crossings })
 }
 
@@ -197,12 +198,6 @@ impl Line {
     fn depth_of(&self, point: &Planes) -> i32 {
         self.depth(shifted(point.along[self.major as usize], point.unit + 8))
     }
-}
-
-/// Whether all components are finite and at most [`MAX_COORDINATE`]: magnitudes are ordered as their bits are.
-fn is_in_range(v: Vec3) -> bool {
-    let fits = |x: f32| x.to_bits() & 0x7fff_ffff <= MAX_COORDINATE.to_bits();
-    fits(v.x) & fits(v.y) & fits(v.z)
 }
 
 /// The first axis along which the speed is greatest; none if it is 0 along all.

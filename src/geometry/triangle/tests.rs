@@ -20,6 +20,10 @@ fn coordinate(random: &mut Random, family: u32) -> f32 {
         3 => 4096.0 + random.below(9) as f32 / 2048.0,
         4 => (random.below(9) as f32 - 4.0) * 1.0e-20,
         5 => (random.below(3) as f32 - 1.0) * 3.0e15 + random.unit(),
+        // Where cubes of lengths leave the range of f32, and lengths are multiplied first.
+        7 => (random.unit() * 2.0 - 1.0) * 1.0e-14,
+        8 => (random.unit() * 2.0 - 1.0) * 1.0e-18,
+        9 => (random.unit() * 2.0 - 1.0) * 1.0e17,
         _ => (random.below(7) as f32 - 3.0) / 3.0,
     }
 }
@@ -28,8 +32,8 @@ fn coordinate(random: &mut Random, family: u32) -> f32 {
 fn every_tier_answers_as_the_exact_one() {
     let mut random = Random::new(7);
     let (mut hits, mut slow) = (0, 0);
-    for _ in 0..60_000 {
-        let family = random.below(7);
+    for _ in 0..90_000 {
+        let family = random.below(10);
         let mut point = || {
             let [x, y, z] = [0; 3].map(|_| coordinate(&mut random, family));
             Vec3::new(x, y, z)

@@ -1,4 +1,16 @@
-//! Builders of the binary hierarchy.
+//! The builder of the binary hierarchy, on all threads of the caller's pool.
+//!
+//! Boxes are gathered; sets of them are divided from the top down ([`grow`]) at borders of [`bins`], between sorted items
+//! ([`sweep`]) or at planes that cut triangles ([`spatial`]); then nodes find better places ([`reinsert`]), and all is put in
+//! the order of a walk ([`layout`]).
+//!
+//! The same hierarchy for any number of threads: boxes are unions and counts are sums, which come out alike in any order;
+//! items keep their order where they are divided; whether threads share a set depends on its size alone; and of moves found
+//! in parallel the order in which they are made is fixed.
+//!
+//! Depth is at most [`MAX_DEPTH`]: no part may have more items than halving could still divide within what is left, or the
+//! set is halved; and no node is moved to where it, or what it is put beside, would get too deep. So each primitive is looked
+//! at a bounded number of times, recursion is as deep, and any input takes time near linear.
 
 mod bins;
 mod division;
@@ -18,8 +30,9 @@ mod task;
 #[cfg(test)]
 mod tests;
 
-use rayon::prelude::*;
 use std::{ops::ControlFlow, vec::Vec};
+
+use rayon::prelude::*;
 
 pub use options::Options;
 pub use progress::Progress;

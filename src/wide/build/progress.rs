@@ -8,7 +8,7 @@ use std::{
 pub struct Progress {
     /// References to primitives that have found their places.
     pub done: u32,
-    /// How many there may be.
+    /// How many there may be, in all hierarchies that are tried.
     pub total: u32,
 }
 

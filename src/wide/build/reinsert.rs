@@ -3,8 +3,9 @@
 //! Meister and Bittner, *Parallel reinsertion for bounding volume hierarchy optimization*, 2018: all threads look for better
 //! places in the same hierarchy, then the moves are made, the most useful first, unless an earlier one was in the way.
 
-use rayon::prelude::*;
 use std::{cmp::Reverse, vec, vec::Vec};
+
+use rayon::prelude::*;
 
 use super::{MAX_DEPTH, node::Node};
 

@@ -205,14 +205,17 @@ fn every_knob() {
 
 #[test]
 fn answers_are_the_lists() {
-    for (count, size) in [(700, 0.3), (700, 1.5), (3000, 0.02)] {
-        let soup = Soup::random(count, size);
-        for options in presets() {
+    let cuts = Options { reinsertions: 0, references: 2.0, ..Options::best() };
+    let soups = [(700, 0.3), (700, 1.5), (3000, 0.02)].map(|(count, size)| Soup::random(count, size));
+    for soup in soups.into_iter().chain([slivers(2000)]) {
+        for options in presets().into_iter().chain([cuts]) {
             let binary = built(&soup.mesh(), &options);
             check(&binary, &soup.mesh(), &options);
             answer_alike(&binary, &soup.mesh(), 2000);
         }
     }
+    let binary = built(&slivers(2000).mesh(), &cuts);
+    assert!(binary.references.len() > 2200, "{}", binary.references.len());
 }
 
 #[test]
@@ -222,6 +225,50 @@ fn rays_look_at_little() {
     for [nodes, tests] in work {
         assert!(nodes < 300 * 250 && tests < 300 * 60, "{work:?}");
     }
+}
+
+/// The work that the surface area heuristic expects of a ray: the surface of all nodes, relative to that of the root.
+fn expected_work(binary: &Binary) -> f32 {
+    let areas: f32 = binary.nodes.iter().map(|node| node.bounds.half_area()).sum();
+    areas / binary.nodes[0].bounds.half_area()
+}
+
+/// Long slivers in all directions, whose boxes are mostly empty, among small triangles.
+fn slivers(count: usize) -> Soup {
+    let Soup(mut corners, numbers) = Soup::random(count, 0.01);
+    let mut random = Random::new(9);
+    for sliver in corners.chunks_exact_mut(60) {
+        let end = Vec3::new(random.unit(), random.unit(), random.unit());
+        sliver[1] = end;
+        sliver[2] = end + 0.001;
+    }
+    Soup(corners, numbers)
+}
+
+#[test]
+fn more_effort_saves_work() {
+    let soup = slivers(20_000);
+    let works = |options: [Options; 3]| options.map(|options| expected_work(&built(&soup.mesh(), &options)));
+    // The same leaves, so that only the way there counts.
+    let plain = Options { reinsertions: 0, ..Options::balanced() };
+    let [binned, reinserted, cut] = works([plain, Options::balanced(), Options::best()]);
+    assert!(reinserted < binned * 0.97, "{binned} {reinserted}");
+    assert!(cut < reinserted * 0.9, "{reinserted} {cut}");
+}
+
+#[test]
+fn cuts_that_do_not_pay_are_not_made() {
+    // Small triangles in rows: nothing to cut.
+    let soup = Soup::new((0..4000).map(|i| {
+        let at = Vec3::new((i % 20) as f32, (i / 20 % 20) as f32, (i / 400) as f32);
+        [at, at + Vec3::X * 0.5, at + Vec3::Y * 0.5]
+    }));
+    let binary = built(&soup.mesh(), &Options::best());
+    assert_eq!(binary.references.len(), 4000);
+    assert_eq!(
+        expected_work(&binary),
+        expected_work(&built(&soup.mesh(), &Options { references: 1.0, ..Options::best() }))
+    );
 }
 
 #[test]

@@ -9,11 +9,20 @@ use obvhs::{
     triangle::Triangle,
 };
 
-use super::{Engine, shadow};
-use crate::{clock::time, mesh::Mesh};
+use super::{Contender, Engine, Role, Wanted, shadow};
+use crate::{clock::time_build, mesh::Mesh};
 
-/// The mesh as obvhs' builders want it.
-pub fn obvhs_triangles(mesh: &Mesh) -> Vec<Triangle> {
+/// Builds those of obvhs that are wanted.
+pub fn obvhs(mesh: &Mesh, wanted: &Wanted) -> Vec<Contender<'static>> {
+    let triangles = triangles(mesh);
+    [CwBvhVerySlow::contender(&triangles, wanted), Bvh2VerySlow::contender(&triangles, wanted)]
+        .into_iter()
+        .flatten()
+        .collect()
+}
+
+/// The mesh as its builders want it.
+fn triangles(mesh: &Mesh) -> Vec<Triangle> {
     mesh.triangles()
         .map(|corners| corners.map(|corner| corner.to_array().into()))
         .map(|[v0, v1, v2]| Triangle { v0, v1, v2 })
@@ -30,29 +39,29 @@ fn ray(ray: &hitscan::Ray) -> Ray {
 }
 
 macro_rules! engine {
-    ($(#[$doc:meta])* $engine:ident, $bvh:ty, $build:ident, $preset:ident, $name:literal) => {
+    ($(#[$doc:meta])* $engine:ident, $bvh:ty, $build:ident, $name:literal) => {
         $(#[$doc])*
-        pub struct $engine {
+        struct $engine {
             bvh: $bvh,
             triangles: Vec<RtTriangle>,
         }
 
         impl $engine {
-            /// Builds it; the triangles put in order afterwards do not count.
-            pub fn build(triangles: &[Triangle]) -> (Self, Duration) {
-                let build = || $build(triangles, BvhBuildParams::$preset(), &mut Duration::default());
-                let (_, first) = time(build);
-                let (bvh, second) = time(build);
+            /// Builds it if it is wanted; the triangles put in order afterwards do not count.
+            fn contender(triangles: &[Triangle], wanted: &Wanted) -> Option<Contender<'static>> {
+                if !wanted.has($name) {
+                    return None;
+                }
+                let (bvh, build) = time_build(|| {
+                    $build(triangles, BvhBuildParams::very_slow_build(), &mut Duration::default())
+                });
                 let triangles = in_order(triangles, &bvh.primitive_indices);
-                (Self { bvh, triangles }, first.min(second))
+                let engine = Box::new(Self { bvh, triangles });
+                Some(Contender { name: $name.into(), role: Some(Role::Obvhs), build, engine })
             }
         }
 
         impl Engine for $engine {
-            fn name(&self) -> String {
-                $name.into()
-            }
-
             fn bytes(&self) -> usize {
                 size_of_val(&self.bvh.nodes[..])
                     + size_of_val(&self.bvh.primitive_indices[..])
@@ -77,11 +86,11 @@ macro_rules! engine {
 }
 
 engine! {
-    /// obvhs' binary BVH by the `slow` preset: what the ratios refer to.
-    Bvh2Slow, Bvh2, build_bvh2_from_tris, slow_build, "obvhs bvh2.slow"
+    /// obvhs' compressed wide BVH.
+    CwBvhVerySlow, CwBvh, build_cwbvh_from_tris, "obvhs CwBvh"
 }
 
 engine! {
-    /// obvhs' compressed wide BVH by the `very_slow` preset.
-    CwBvhVerySlow, CwBvh, build_cwbvh_from_tris, very_slow_build, "obvhs cwbvh.very_slow"
+    /// obvhs' binary BVH.
+    Bvh2VerySlow, Bvh2, build_bvh2_from_tris, "obvhs Bvh2"
 }

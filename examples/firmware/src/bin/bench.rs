@@ -9,12 +9,9 @@ use core::hint::black_box;
 use firmware::{
     Answer, Counter,
     baked::{CONTEST, Contestant},
-    camera, entry, finish, stack_of,
+    camera, entry, finish, for_structure, stack_of,
 };
-use hitscan::{
-    Bvh, CompactKdTree, DualSplit, Grid, KdTree, Mesh, Octree, Ray, Scene, accel::Accelerator, asset::Stored,
-    glam::Vec3,
-};
+use hitscan::{Mesh, Ray, Scene, accel::Accelerator, asset::Stored, glam::Vec3};
 use semihosting::println;
 
 /// Prints the line of a contestant; whether its hits are the host's.
@@ -52,15 +49,7 @@ fn main() -> ! {
     println!("triangles structure                structure all in closest     any bytes");
     let mut same = true;
     for contestant in black_box(CONTEST) {
-        let measure = match contestant.name.split(' ').next() {
-            Some("grid") => measure::<Grid>,
-            Some("octree") => measure::<Octree>,
-            Some("kdtree") => measure::<KdTree>,
-            Some("kdtree-compact") => measure::<CompactKdTree>,
-            Some("bvh") => measure::<Bvh>,
-            _ => measure::<DualSplit>,
-        };
-        same &= measure(&counter, contestant);
+        same &= for_structure!(contestant, measure)(&counter, contestant);
     }
     finish(same)
 }

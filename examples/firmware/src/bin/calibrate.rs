@@ -15,6 +15,8 @@ use hitscan::{
     Bvh, CompactKdTree, DualSplit, Grid, KdTree, LatticeMesh, Mesh, Octree, Primitives, Ray, Scene,
     accel::{self, Accelerator, LatticeAccelerator},
     asset::Stored,
+    geometry::Triangle,
+    glam::Vec3,
     primitives,
 };
 use semihosting::{print, println};
@@ -56,7 +58,14 @@ type Measure = fn(&Counter, &Contestant, &mut Fit);
 #[inline(never)]
 fn floats<A: Accelerator + Stored<'static>>(counter: &Counter, contestant: &Contestant, fit: &mut Fit) {
     let scene: Scene<A, Mesh> = contestant.baked.scene_under();
-    measure::<A, Mesh>(counter, contestant, fit, |ray| scene.closest_hit(ray).is_some(), |ray| scene.any_hit(ray));
+    measure::<A, Mesh>(
+        counter,
+        contestant,
+        fit,
+        |ray| scene.closest_hit(ray).is_some(),
+        |ray| scene.any_hit(ray),
+        Mesh::triangle,
+    );
 }
 
 /// Whole numbers.
@@ -72,6 +81,7 @@ where
         fit,
         |ray| scene.closest_hit(ray).is_some(),
         |ray| scene.any_hit(ray),
+        LatticeMesh::triangle,
     );
 }
 
@@ -83,6 +93,7 @@ fn measure<A: Accelerator + Stored<'static>, P: Primitives + Stored<'static>>(
     fit: &mut Fit,
     closest_hit: impl Fn(&Ray) -> bool,
     any_hit: impl Fn(&Ray) -> bool,
+    triangle: impl Fn(&P, u32) -> Triangle,
 ) {
     let (nodes, tests) = (Cell::new(0), Cell::new(0));
     let counted = Scene::new(
@@ -96,7 +107,11 @@ fn measure<A: Accelerator + Stored<'static>, P: Primitives + Stored<'static>>(
         let instructions = counter.instructions(|| _ = black_box(closest_hit(black_box(&ray))));
         fit.add(nodes.get() - before, tests.get() - tested, instructions);
     }
-    for ray in camera::row(camera::HEIGHT / 2).step_by(8) {
+    // At corners the slow tiers of the triangle test decide: they take the most stack.
+    let primitives = contestant.baked.read::<P>();
+    let corners = (0..primitives.len()).step_by(29).map(|index| triangle(&primitives, index).a);
+    let at_corners = corners.map(|corner| Ray::between(corner * 3.0 + Vec3::ONE, corner).up_to(2.0));
+    for ray in camera::row(camera::HEIGHT / 2).step_by(8).chain(at_corners) {
         let closest = stack_of(&mut || _ = black_box(closest_hit(&ray)));
         let any = stack_of(&mut || _ = black_box(any_hit(&ray)));
         fit.stack = fit.stack.max(closest).max(any);

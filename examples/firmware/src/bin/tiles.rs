@@ -9,10 +9,10 @@ use core::hint::black_box;
 use firmware::{
     Answer, Counter,
     baked::{CONTEST, Contestant},
-    entry, finish, stack_of,
+    entry, finish, for_structure, stack_of,
 };
 use hitscan::{
-    Bvh, CompactKdTree, DualSplit, Grid, Hit, KdTree, Mesh, Octree, Scene,
+    Hit, Mesh, Scene,
     accel::Accelerator,
     asset::Stored,
     glam::Vec3,
@@ -78,15 +78,7 @@ fn main() -> ! {
     println!("structure                     %  alone  tiled        %  bytes");
     let mut same = true;
     for contestant in black_box(CONTEST).iter().filter(|contestant| contestant.triangles == 5000) {
-        let measure = match contestant.name.split(' ').next() {
-            Some("grid") => measure::<Grid>,
-            Some("octree") => measure::<Octree>,
-            Some("kdtree") => measure::<KdTree>,
-            Some("kdtree-compact") => measure::<CompactKdTree>,
-            Some("bvh") => measure::<Bvh>,
-            _ => measure::<DualSplit>,
-        };
-        same &= measure(&counter, contestant);
+        same &= for_structure!(contestant, measure)(&counter, contestant);
     }
     finish(same)
 }

@@ -5,8 +5,8 @@ use crate::{
     accel::{
         LatticeAccelerator, LatticeWalk, Leaf,
         kdtree::MAX_DEPTH,
+        lattice_segment::{LatticeSegment, LatticeWaiting},
         leaf::References,
-        on_lattice::{LatticeSegment, LatticeWaiting},
     },
     geometry::LatticeRay,
 };

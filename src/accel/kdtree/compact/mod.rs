@@ -17,7 +17,11 @@ pub(super) use node::Node;
 pub use traverse::CompactKdTraversal;
 
 use self::node::{Kind, kind};
-use super::{Options, Side, build, form::Form};
+use super::{
+    Options, Side, build,
+    enter::{self, Opened, Planes},
+    form::Form,
+};
 use crate::{
     accel::{Accelerator, Cell, Entries, Entry, Hierarchy, Inside, Leaf, leaf::References},
     arena::Arena,
@@ -134,7 +138,15 @@ impl<'a> Accelerator for CompactKdTree<'a> {
 
     /// One entry: a second one costs each ray more than it spares.
     fn enter(&self, bundle: &Bundle) -> Entries {
-        Entries::find(self, bundle, 1)
+        enter::entries(self.bounds, bundle, |node| {
+            Some(match kind(self.nodes, node)? {
+                Kind::Inner { axis, plane, left, right, empty } => {
+                    let [begin, end] = [plane, plane + 1].map(|number| self.lattice.position(axis, number));
+                    Opened::Parted { planes: Planes { axis, begin, end }, left, right, empty }
+                }
+                Kind::Leaf { count, .. } => Opened::Leaf { is_empty: count == 0 },
+            })
+        })
     }
 
     #[inline]

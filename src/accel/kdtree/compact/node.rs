@@ -152,12 +152,13 @@ impl Node {
     /// Where the children of the inner node at `index` are, the left one first.
     #[inline(always)]
     pub(super) fn children(self, nodes: &[u32], index: u32) -> (u32, u32) {
-        let next = index + 1;
+        // Corrected where it is rare, not chosen: a jump less on the way of nearly all.
+        let (mut left, mut right) = (index + 1, index + self.link());
         if self.is_long() {
-            (next + 1, index.wrapping_add(nodes.get(next as usize).copied().unwrap_or(0)))
-        } else {
-            (next, index + self.link())
+            right = index.wrapping_add(nodes.get(left as usize).copied().unwrap_or(0));
+            left += 1;
         }
+        (left, right)
     }
 
     /// Whether a leaf's count stands in a word of its own.

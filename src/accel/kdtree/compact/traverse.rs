@@ -7,7 +7,7 @@ use crate::{
         segment::{Segment, Waiting},
         slope::Slopes,
     },
-    geometry::{PreparedRay, beyond, slack},
+    geometry::{PreparedRay, beyond},
     math::{greatest, least},
 };
 
@@ -30,7 +30,7 @@ impl<'a> CompactKdTraversal<'a> {
     pub(super) fn within(tree: &CompactKdTree<'a>, entry: &Entry, ray: &PreparedRay) -> Self {
         let mut walk = Self::new(tree, ray);
         if walk.next.is_some() {
-            walk.next = Segment::within(&entry.bounds, entry.node, ray, slack(ray.ray().t_min));
+            walk.next = Segment::of_entry(entry, ray);
         }
         walk
     }
@@ -39,23 +39,6 @@ impl<'a> CompactKdTraversal<'a> {
     pub(super) fn new(tree: &CompactKdTree<'a>, ray: &PreparedRay) -> Self {
         let (slopes, next) = Slopes::new(ray, &tree.lattice, 1.0);
         Self { nodes: tree.nodes, references: tree.references, slopes, next, waiting: Waiting::new() }
-    }
-
-    /// The primitives of the leaf at `index`.
-    #[inline(always)]
-    fn leaf(&self, node: Node, index: u32) -> Leaf<'a> {
-        let (mut first, mut count) = (node.first(), node.count());
-        if node.is_far() | node.is_large() {
-            let behind = |by: u32| self.nodes.get((index + by) as usize).copied().unwrap_or(0);
-            if node.is_far() {
-                first = behind(1);
-            }
-            if node.is_large() {
-                count = behind(1 + u32::from(node.is_far()));
-            }
-        }
-        let references = if count == 1 { References::IDENTITY } else { self.references };
-        Leaf::of(references, first, count)
     }
 
     #[inline(always)]
@@ -74,7 +57,7 @@ impl<'a> CompactKdTraversal<'a> {
             let node = Node::from_word(word);
             let Some(slope) = self.slopes.along(node.axis_or_leaf()) else {
                 if node.count() != 0 {
-                    return Step::Leaf(self.leaf(node, cell.node));
+                    return Step::Leaf(node.leaf_in(nodes, cell.node, self.references));
                 }
                 match self.waiting.pop(end) {
                     Some(next) => cell = next,
@@ -105,11 +88,7 @@ impl<'a> CompactKdTraversal<'a> {
                 }
                 continue;
             }
-            let (mut left, mut right) = (cell.node + 1, cell.node + node.link());
-            if node.is_long() {
-                right = cell.node.wrapping_add(nodes.get(left as usize).copied().unwrap_or(0));
-                left += 1;
-            }
+            let (left, right) = node.children(nodes, cell.node);
             let (near, far) = if descended { (right, left) } else { (left, right) };
             if entry > cell.exit {
                 cell.node = near;

@@ -1,0 +1,247 @@
+use std::path::Path;
+
+use hitscan::{
+    Accelerator, Hit, Instance, Instances, Mesh, Primitives, Ray, Scene,
+    accel::{Bvh, DualSplit, KdTree, Structure},
+    asset::{Asset, Kind, Stored},
+    geometry::Aabb,
+    glam::Vec3,
+    primitives::{Smooth, Surface},
+    render::{Caster, Material, Materials},
+};
+
+use super::{Built, Palette, Queries, Source, StructureArgs, View, broken, normals_by_place, source::damaged};
+use crate::{
+    failure::Failure,
+    stage::{Up, glazed, plate},
+    units::{count, seconds},
+};
+
+/// A source under its structure, ready for rays.
+#[derive(Clone, Copy)]
+#[allow(missing_debug_implementations, reason = "a scene of any kind shows nothing of itself")]
+pub struct Subject<'a> {
+    /// What rays are cast at.
+    pub scene: &'a dyn Queries,
+    /// How many numbers its hits can have.
+    pub primitives: u32,
+    body: Body<'a>,
+}
+
+#[derive(Clone, Copy)]
+enum Body<'a> {
+    Mesh { view: &'a View<'a>, built: &'a Built },
+    World { placed: &'a [Instance], boxes: &'a [Aabb], own: u64, bytes: usize, seconds: f64 },
+}
+
+impl Source {
+    /// Opens it, under the structure that is asked for, for as long as `visit` takes.
+    pub fn with_subject<R>(
+        &self,
+        path: &Path,
+        structure: &StructureArgs,
+        smooth: bool,
+        visit: impl FnOnce(&Subject<'_>) -> Result<R, Failure>,
+    ) -> Result<R, Failure> {
+        if let Some(asset) = self.world() {
+            return with_world(path, &asset, structure, smooth, visit);
+        }
+        let view = self.view(path)?;
+        let built = view.build(structure.structure, structure.preset)?;
+        let normals = if smooth { normals_by_place(&view.mesh) } else { Vec::new() };
+        let shaded = match view.normals {
+            Some(normals) if !smooth => Smooth::packed(view.mesh, normals),
+            _ => Smooth::new(view.mesh, &normals),
+        };
+        let renumbered = view.renumbered(shaded)?;
+        let scene = match &renumbered {
+            Some(triangles) => built.scene(triangles)?,
+            None => built.scene(&shaded)?,
+        };
+        let body = Body::Mesh { view: &view, built: &built };
+        visit(&Subject { scene: &*scene, primitives: view.mesh.len(), body })
+    }
+}
+
+impl Subject<'_> {
+    /// Points, finite ones, all of which should be in a picture.
+    pub fn points(&self) -> Box<dyn Iterator<Item = Vec3> + '_> {
+        match &self.body {
+            Body::Mesh { view, .. } => {
+                let bounds = self.scene.bounds();
+                Box::new(view.mesh.vertices().iter().copied().filter(move |point| bounds.contains(*point)))
+            }
+            Body::World { placed, boxes, .. } => Box::new(placed.iter().flat_map(|instance| {
+                let bounds = boxes.get(instance.scene() as usize).copied().unwrap_or(Aabb::EMPTY);
+                let corner = move |n: u32| {
+                    let pick = |axis: usize| if n >> axis & 1 == 0 { bounds.min[axis] } else { bounds.max[axis] };
+                    Vec3::new(pick(0), pick(1), pick(2))
+                };
+                (0..8).map(move |n| instance.transform().point(corner(n)))
+            })),
+        }
+    }
+
+    /// Which axis points up, as far as can be told.
+    pub fn up(&self) -> Up {
+        match &self.body {
+            Body::Mesh { view, .. } if view.y_up => Up::Y,
+            Body::Mesh { .. } => Up::guess(&self.scene.bounds()),
+            // A field is flat, but so is a shelf: worlds say how they stand, with y up.
+            Body::World { .. } => Up::Y,
+        }
+    }
+
+    /// The materials of all primitives and, after them, that of the plate below.
+    pub fn dress(&self) -> Palette {
+        let mut palette = Palette::default();
+        if let Body::Mesh { view, .. } = &self.body {
+            for index in 0..view.mesh.len() {
+                palette.push(view.materials.map_or_else(glazed, |materials| materials.of(index)), 1);
+            }
+        }
+        palette.push(plate(), 1);
+        palette
+    }
+
+    /// How many triangles there are, for people.
+    pub fn size(&self) -> String {
+        match &self.body {
+            Body::Mesh { view, .. } => format!("{} triangles", count(view.mesh.len())),
+            Body::World { placed, own, .. } => {
+                let (all, own, placed) = (count(self.primitives), count(*own), count(placed.len()));
+                format!("{all} triangles, {own} of their own placed {placed} times")
+            }
+        }
+    }
+
+    /// What there is to say of the structure.
+    pub fn structure(&self) -> String {
+        match &self.body {
+            Body::Mesh { view, built } => built.describe(view.mesh.len() as usize),
+            Body::World { bytes, seconds: took, .. } => {
+                format!("two levels of the asset, {} bytes in all, checked in {}", count(*bytes), seconds(*took))
+            }
+        }
+    }
+
+    /// The structure's name and how long it took.
+    pub fn time(&self) -> String {
+        match &self.body {
+            Body::Mesh { built, .. } => format!("{} {}", built.name, built.time()),
+            Body::World { seconds: took, .. } => format!("two levels checked in {}", seconds(*took)),
+        }
+    }
+}
+
+/// Placed scenes, which know their materials.
+#[derive(Debug)]
+struct World<'a, A, T> {
+    scene: Scene<T, Instances<'a, A, Smooth<'a>>>,
+    materials: &'a [Option<Materials<'a>>],
+}
+
+impl<A: Accelerator, T: Accelerator> Caster for World<'_, A, T> {
+    fn closest_hit(&self, ray: &Ray, _depth: u32) -> Option<Hit> {
+        self.scene.closest_hit(ray)
+    }
+
+    fn enter(&self, bundle: &hitscan::geometry::Bundle) -> hitscan::accel::Entries {
+        self.scene.enter(bundle)
+    }
+
+    fn closest_hit_from(&self, entries: &hitscan::accel::Entries, ray: &Ray) -> Option<Hit> {
+        self.scene.closest_hit_from(entries, ray)
+    }
+
+    fn any_hit(&self, ray: &Ray, _depth: u32) -> bool {
+        self.scene.any_hit(ray)
+    }
+
+    fn any_hit_near(&self, ray: &Ray, _depth: u32, last: &mut Option<u32>) -> bool {
+        self.scene.any_hit_near(ray, last)
+    }
+
+    fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
+        self.scene.surface(ray, hit)
+    }
+
+    fn material(&self, hit: &Hit) -> Option<Material> {
+        let instances = self.scene.primitives();
+        let (instance, primitive) = instances.locate(hit.primitive)?;
+        let scene = instances.placed().get(instance as usize)?.scene();
+        let materials = self.materials.get(scene as usize)?;
+        Some(materials.map_or_else(glazed, |materials| materials.of(primitive)))
+    }
+
+    fn bounds(&self) -> Aabb {
+        self.scene.bounds()
+    }
+}
+
+impl<A: Accelerator + Sync, T: Accelerator + Sync> Queries for World<'_, A, T> {
+    fn count(&self, ray: &Ray) -> (Option<Hit>, u32) {
+        self.scene.count(ray)
+    }
+}
+
+/// Opens a world, without asking at every step which structure it has where all levels have a usual one.
+fn with_world<R>(
+    path: &Path,
+    asset: &Asset<'_>,
+    structure: &StructureArgs,
+    smooth: bool,
+    visit: impl FnOnce(&Subject<'_>) -> Result<R, Failure>,
+) -> Result<R, Failure> {
+    if structure.structure.is_some() {
+        let what = format!("{}: has its structures in it", path.display());
+        return Err(Failure::new(what, "give --structure to `hitscan bake`"));
+    }
+    let parts: Vec<Asset<'_>> = asset.parts().collect::<Result<_, _>>().map_err(|error| damaged(path, error))?;
+    let kind = |asset: &Asset<'_>| asset.read::<Structure<'_>>().ok().and_then(|structure| structure.kind());
+    let first = parts.first().and_then(kind);
+    let common = first.filter(|_| parts.iter().all(|part| kind(part) == first));
+    match (common, kind(asset)) {
+        (Some(Kind::KdTree), Some(Kind::Bvh)) => opened::<KdTree<'_>, Bvh<'_>, R>(path, asset, &parts, smooth, visit),
+        (Some(Kind::Bvh), Some(Kind::Bvh)) => opened::<Bvh<'_>, Bvh<'_>, R>(path, asset, &parts, smooth, visit),
+        (Some(Kind::DualSplit), Some(Kind::Bvh)) => {
+            opened::<DualSplit<'_>, Bvh<'_>, R>(path, asset, &parts, smooth, visit)
+        }
+        _ => opened::<Structure<'_>, Structure<'_>, R>(path, asset, &parts, smooth, visit),
+    }
+}
+
+fn opened<'a, A: Accelerator + Stored<'a> + Sync, T: Accelerator + Stored<'a> + Sync, R>(
+    path: &Path,
+    asset: &Asset<'a>,
+    parts: &[Asset<'a>],
+    smooth: bool,
+    visit: impl FnOnce(&Subject<'_>) -> Result<R, Failure>,
+) -> Result<R, Failure> {
+    let begun = std::time::Instant::now();
+    let damaged = |error: hitscan::Error| damaged(path, error);
+    let meshes: Vec<Mesh<'a>> = parts.iter().map(Asset::read).collect::<Result<_, _>>().map_err(damaged)?;
+    let materials: Vec<Option<Materials<'a>>> = parts.iter().map(|part| part.read().ok()).collect();
+    let normals: Vec<Vec<Vec3>> =
+        meshes.iter().map(|mesh| if smooth { normals_by_place(mesh) } else { Vec::new() }).collect();
+    let mut scenes = Vec::new();
+    for ((part, mesh), normals) in parts.iter().zip(&meshes).zip(&normals) {
+        let structure: A = part.read().map_err(damaged)?;
+        scenes.push(Scene::new(structure, Smooth::new(*mesh, normals)).map_err(broken)?);
+    }
+    let placed: &[Instance] = asset.read().map_err(damaged)?;
+    let instances = Instances::new(&scenes, placed).map_err(broken)?;
+    let structure: T = asset.read().map_err(damaged)?;
+    let primitives = instances.numbers();
+    let scene = Scene::new(structure, instances).map_err(broken)?;
+    let world = World { scene, materials: &materials };
+    let boxes: Vec<Aabb> = scenes.iter().map(Scene::bounds).collect();
+    let body = Body::World {
+        placed,
+        boxes: &boxes,
+        own: meshes.iter().map(|mesh| u64::from(mesh.len())).sum(),
+        bytes: size_of_val(asset.as_words()),
+        seconds: begun.elapsed().as_secs_f64(),
+    };
+    visit(&Subject { scene: &world, primitives, body })
+}

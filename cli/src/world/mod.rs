@@ -1,0 +1,120 @@
+//! Worlds: a few meshes, placed very often, described in a short text.
+//!
+//! ```toml
+//! [part.bush]
+//! mesh = "bush.obj"                       # beside this file
+//!
+//! [[part.hedge.place]]                    # a part made of parts
+//! part = "bush"
+//! grid = [9, 1, 1]
+//! step = [0.8, 0, 0]
+//!
+//! [[place]]
+//! part = "hedge"
+//! at = [1, 0, 2]
+//! turn = [0, 90, 0]                       # degrees about x, then y, then z
+//! scale = 1.5
+//!
+//! [[place]]                               # a thousand of them, where chance puts them: the same on every machine
+//! part = "bush"
+//! scatter = 1000
+//! seed = 7
+//! from = [-50, 0, -50]
+//! to = [50, 0, 50]
+//! turns = [0, 360, 0]                     # turned by up to so much more
+//! scales = 0.4                            # and by up to this factor larger or smaller: 0.4 is 1/1.4 to 1.4
+//! ```
+
+mod file;
+mod places;
+mod plant;
+
+use std::path::Path;
+
+use hitscan::{
+    Bvh, Instance, Instances, Mesh, Scene,
+    accel::{Plan, bvh},
+    bake::{self, Baker},
+};
+
+use self::file::File;
+use crate::{
+    failure::Failure,
+    output::{OutputError, write_atomically},
+    scene::{Built, Choice, Geometry, Named, Preset, Source, StructureArgs, broken},
+};
+
+/// A mesh that is placed, with its structure.
+struct Part {
+    geometry: Geometry,
+    built: Built,
+}
+
+/// The asset of the world that a file describes.
+pub fn load(path: &Path, options: &StructureArgs) -> Result<Vec<u32>, Failure> {
+    let named = |what: &dyn std::fmt::Display, mend: &str| Failure::new(format!("{}: {what}", path.display()), mend);
+    let structure = match options.structure {
+        Some(Choice::Named(structure)) if structure == Named::list() => {
+            return Err(named(&"a world needs a structure", "choose another than list"));
+        }
+        Some(Choice::Named(structure)) => structure,
+        _ => Named::assumed(),
+    };
+    let file = File::read(path)?;
+    let (meshes, placed) = places::expand(&file).map_err(|what| named(&what, "mend the description"))?;
+    let parts = meshes.iter().map(|mesh| part(path, mesh, structure, options.preset));
+    let parts: Vec<Part> = parts.collect::<Result<_, _>>()?;
+    let mut placed: Vec<Instance> = placed.into_iter().map(|(part, place)| Instance::new(part, place)).collect();
+
+    let meshes: Vec<Mesh<'_>> = parts.iter().map(|part| part.geometry.mesh()).collect::<Result<_, _>>()?;
+    let mut scenes = Vec::new();
+    for (part, mesh) in parts.iter().zip(&meshes) {
+        scenes.push(Scene::new(part.built.structure(mesh)?, *mesh).map_err(broken)?);
+    }
+    let instances = Instances::place(&scenes, &mut placed)
+        .map_err(|error| named(&error, "place fewer, or nearer to the origin"))?;
+    // Boxes of instances overlap: a hierarchy asks each instance once, where space that is divided asks it in every part.
+    let top = bake::build(&instances, &Plan::Bvh(bvh::Options::default())).map_err(broken)?;
+    let mut baker = Baker::new();
+    for ((part, mesh), scene) in parts.iter().zip(&meshes).zip(&scenes) {
+        let mut asset = Baker::new().mesh(mesh).structure(*scene.accelerator());
+        if !part.geometry.palette.materials.is_empty() {
+            asset = asset.materials(&part.geometry.palette.materials, part.geometry.palette.as_numbers());
+        }
+        baker = baker.part(asset);
+    }
+    Ok(baker.instances(instances.placed()).structure(Bvh::open(&top).map_err(broken)?).finish())
+}
+
+/// Bakes the world that a file describes into an asset.
+///
+/// # Errors
+///
+/// What is wrong with the description, what it names, or the output.
+pub fn bake(path: &Path, output: &Path) -> Result<(), Failure> {
+    let words = load(path, &StructureArgs::default())?;
+    Ok(write_words(output, &words)?)
+}
+
+/// Writes the words of an asset.
+pub fn write_words(path: &Path, words: &[u32]) -> Result<(), OutputError> {
+    write_atomically(path, |file| words.iter().try_for_each(|word| file.write_all(&word.to_le_bytes())))
+}
+
+/// A mesh that stands in a file beside `path`, or a plant that grows by itself, with its structure.
+fn part(path: &Path, mesh: &str, structure: &Named, preset: Preset) -> Result<Part, Failure> {
+    let geometry = if let Some(seed) = mesh.strip_prefix("plant:").and_then(|seed| seed.parse().ok()) {
+        plant::grow(seed)
+    } else {
+        let beside = path.parent().unwrap_or(Path::new("")).join(mesh);
+        match Source::load(&beside)? {
+            Source::Model(geometry) => geometry,
+            Source::Asset { .. } => {
+                let what = format!("{}: is no mesh", beside.display());
+                return Err(Failure::new(what, "name the mesh it was made from"));
+            }
+        }
+    };
+    let built = Built::named(&geometry.mesh()?, structure, preset, None)?;
+    Ok(Part { geometry, built })
+}

@@ -1,0 +1,138 @@
+use super::{MAX_DEPTH, node::Side};
+use crate::{
+    accel::{Entries, Entry},
+    geometry::{Aabb, Axis, Bundle},
+    math::{greatest, least},
+};
+
+/// What a node of a kD-tree says to all rays of a bundle.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Opened {
+    /// Primitives, or none.
+    Leaf { is_empty: bool },
+    /// Children on both sides of a plane, or on one.
+    Parted { planes: Planes, left: u32, right: u32, empty: Option<Side> },
+}
+
+/// Where the right child begins and the left one ends: one plane, or the faces of a thick one.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Planes {
+    pub(super) axis: Axis,
+    pub(super) begin: f32,
+    pub(super) end: f32,
+}
+
+impl Planes {
+    /// What of a box is on a side.
+    fn cut(&self, bounds: &Aabb, side: Side) -> Aabb {
+        match side {
+            Side::Left => bounds.split(self.axis, self.end).0,
+            Side::Right => bounds.split(self.axis, self.begin).1,
+        }
+    }
+
+    /// When rays that are in a cell from `enter` to `exit` are in its left and its right part.
+    #[inline(always)]
+    fn part(&self, bundle: &Bundle, enter: f32, exit: f32) -> [(f32, f32); 2] {
+        let begin = bundle.passage(self.axis, self.begin, enter);
+        let end = bundle.passage(self.axis, self.end, enter);
+        match (begin.descends, end.descends) {
+            (false, false) => [(enter, least(end.latest, exit)), (greatest(begin.earliest, enter), exit)],
+            (true, true) => [(greatest(end.earliest, enter), exit), (enter, least(begin.latest, exit))],
+            // They begin between the faces.
+            _ => [(enter, exit); 2],
+        }
+    }
+}
+
+/// A node, and when rays of a bundle can be in its cell.
+#[derive(Clone, Copy, Debug)]
+struct Beam {
+    node: u32,
+    enter: f32,
+    exit: f32,
+}
+
+/// What a bundle finds at a node.
+#[derive(Clone, Copy, Debug)]
+enum Found {
+    /// Primitives.
+    Primitives,
+    /// Nothing, or nothing that its rays meet.
+    Nothing,
+    /// What counts is on one side.
+    Half(Beam, Planes, Side),
+    /// It may be on both.
+    Halves([Beam; 2], Planes),
+}
+
+/// Nodes that are visited to tell whether a cell is empty; it counts as one that is not if they do not suffice.
+const PATIENCE: u32 = 64;
+
+/// The smallest cell of a tree that holds all that the rays can meet; none if there is nothing.
+///
+/// Where they are on both sides of a plane, and there is nothing for them on one, the cell is on the other.
+pub(super) fn entries(mut bounds: Aabb, bundle: &Bundle, open: impl Fn(u32) -> Option<Opened>) -> Entries {
+    let Some((enter, exit)) = bundle.interval(&bounds) else { return Entries::default() };
+    let mut at = Beam { node: 0, enter, exit };
+    loop {
+        let (next, planes, side) = match look(bundle, at, &open) {
+            Found::Nothing => return Entries::default(),
+            Found::Primitives => break,
+            Found::Half(next, planes, side) => (next, planes, side),
+            Found::Halves([left, right], planes) => {
+                match (is_empty(bundle, left, &open), is_empty(bundle, right, &open)) {
+                    (true, true) => return Entries::default(),
+                    (true, false) => (right, planes, Side::Right),
+                    (false, true) => (left, planes, Side::Left),
+                    (false, false) => break,
+                }
+            }
+        };
+        bounds = planes.cut(&bounds, side);
+        at = next;
+    }
+    Entry { bounds, node: at.node, enter: at.enter }.into()
+}
+
+/// Whether there certainly is nothing in a cell that the rays can meet.
+fn is_empty(bundle: &Bundle, at: Beam, open: impl Fn(u32) -> Option<Opened>) -> bool {
+    let mut waiting: heapless::Vec<Beam, MAX_DEPTH> = heapless::Vec::new();
+    let mut next = Some(at);
+    for _ in 0..PATIENCE {
+        let Some(beam) = next else { return true };
+        next = match look(bundle, beam, &open) {
+            Found::Primitives => return false,
+            Found::Nothing => waiting.pop(),
+            Found::Half(half, ..) => Some(half),
+            Found::Halves([left, right], _) => {
+                // Cannot fail: no tree is deeper than its stack.
+                let _ = waiting.push(right);
+                Some(left)
+            }
+        };
+    }
+    false
+}
+
+/// One step of all rays at once: the intervals of a walk, with the earliest entry and the latest exit of any ray.
+#[inline(always)]
+fn look(bundle: &Bundle, Beam { node, enter, exit }: Beam, open: impl Fn(u32) -> Option<Opened>) -> Found {
+    let (planes, left, right, empty) = match open(node) {
+        Some(Opened::Parted { planes, left, right, empty }) => (planes, left, right, empty),
+        Some(Opened::Leaf { is_empty: false }) => return Found::Primitives,
+        _ => return Found::Nothing,
+    };
+    let [below, above] = planes.part(bundle, enter, exit);
+    // Written so that NaN visits.
+    let without_left = empty == Some(Side::Left) || below.0 > below.1;
+    let without_right = empty == Some(Side::Right) || above.0 > above.1;
+    let left = Beam { node: left, enter: below.0, exit: below.1 };
+    let right = Beam { node: right, enter: above.0, exit: above.1 };
+    match (without_left, without_right) {
+        (true, true) => Found::Nothing,
+        (true, false) => Found::Half(right, planes, Side::Right),
+        (false, true) => Found::Half(left, planes, Side::Left),
+        (false, false) => Found::Halves([left, right], planes),
+    }
+}
