@@ -78,7 +78,7 @@ impl File {
         };
         let text = std::str::from_utf8(&bytes).map_err(|error| refuse(&error))?;
         toml::from_str(text).map_err(|error| {
-            let line = error.span().map_or(1, |span| text[..span.start].lines().count().max(1));
+            let line = error.span().map_or(1, |span| 1 + text[..span.start].matches('\n').count());
             refuse(&format!("line {line}: {}", error.message().replace('\n', " ")))
         })
     }
