@@ -53,7 +53,7 @@ impl Tree {
         self.masks.is_empty() || self.masks.get(number as usize).is_some_and(|mask| mask & ray.ray().mask != 0)
     }
 
-    /// The hit with a triangle of a block, by the slow tiers; `front` is known if it is certainly hit.
+    /// The hit with a triangle of a block that the lanes left open: by the slow tiers if `front` is known, else by all.
     #[cold]
     #[inline(never)]
     pub(super) fn certify(
@@ -67,7 +67,10 @@ impl Tree {
         let word = |row: usize| block.get(row * count + lane).copied().unwrap_or(0);
         let corner = |i: usize| [3 * i, 3 * i + 1, 3 * i + 2].map(|row| f32::from_bits(word(row))).into();
         let triangle = Triangle::new(corner(0), corner(1), corner(2));
-        let crossing = triangle.intersect_again(ray, (span.t_min(), span.t_max()), front)?;
+        let crossing = match front {
+            Some(_) => triangle.decide(ray, front)?,
+            None => triangle.intersect(ray, span.t_min(), span.t_max())?,
+        };
         let number = word(TRIANGLE_WORDS - 1);
         let is_hit = (crossing.front || self.sides == Sides::Both) && self.is_seen(number, ray);
         if is_hit { span.accept(crossing.t, number) } else { None }

@@ -22,8 +22,8 @@ pub(super) const TOLERANCE: f32 = 1.0 / 131_072.0;
 pub(super) const SMALL: f32 = 7.888_609e-31;
 
 /// Beyond these determinants cubes of lengths may leave the range of `f32`: 2^-20 and 2^60.
-const SMALL_AREA: f32 = 1.0 / 1_048_576.0;
-const LARGE_AREA: f32 = 1_152_921_504_606_846_976.0;
+pub(super) const SMALL_AREA: f32 = 1.0 / 1_048_576.0;
+pub(super) const LARGE_AREA: f32 = 1_152_921_504_606_846_976.0;
 
 /// By which lengths are then multiplied or divided, 2^40.
 const SCALE: f32 = 1_099_511_627_776.0;

@@ -3,7 +3,7 @@
 
 use fearless_simd::{Simd, SimdBase, SimdMask, f32x8, mask32x8};
 
-use super::filter::{SMALL, TOLERANCE, U, UNDERFLOW};
+use super::filter::{LARGE_AREA, SMALL, SMALL_AREA, TOLERANCE, U, UNDERFLOW};
 use crate::geometry::{PreparedRay, beyond, ray::LIFT};
 
 /// A ray as the test of eight triangles wants it.
@@ -37,8 +37,8 @@ pub(crate) struct Crossings<S: Simd> {
     pub(crate) proven: u32,
     /// A bit for each that may be hit, but within the limits only as far as is known.
     pub(crate) open: u32,
-    /// A bit for each that is hit, wherever that is.
-    hit: u32,
+    /// A bit for each open one that is hit, and of a size at which no other scale is tried: the slow tiers come next.
+    decided: u32,
     /// A bit for each determinant above zero.
     positive: u32,
     backward: bool,
@@ -112,7 +112,9 @@ impl<S: Simd> ShearLanes<S> {
         let within = t.simd_ge(t_min) & t.simd_le(t_max);
         let placed = hit & narrow & near & normal;
         let mut open = lanes & !placed.to_bitmask() as u32;
+        let mut decided = 0;
         if open != 0 {
+            decided = (hit & area.simd_ge(SMALL_AREA) & area.simd_le(LARGE_AREA)).to_bitmask() as u32;
             let error = ((error * (8.0 * U) + 1.0e-36) / area + magnitude * (8.0 * U) + 1.0e-36) * self.inverse.abs();
             let error = error + 1.0e-36;
             let outside = (t + error).simd_lt(t_min) | (t - error).simd_gt(beyond(t_max));
@@ -124,7 +126,7 @@ impl<S: Simd> ShearLanes<S> {
         }
         let positive = determinant.simd_gt(f32x8::splat(simd, 0.0)).to_bitmask() as u32;
         let proven = (placed & within).to_bitmask() as u32 & lanes;
-        Crossings { t, proven, open, hit: hit.to_bitmask() as u32, positive, backward: self.inverse <= 0.0 }
+        Crossings { t, proven, open, decided, positive, backward: self.inverse <= 0.0 }
     }
 }
 
@@ -135,9 +137,9 @@ impl<S: Simd> Crossings<S> {
         if self.backward { !self.positive } else { self.positive }
     }
 
-    /// Whether the triangle of a lane that is certainly hit is hit from its front; none if that is open.
+    /// Whether an open lane's triangle is hit from its front, if only the slow tiers can say where it is hit.
     #[inline(always)]
     pub(crate) fn is_front(&self, lane: usize) -> Option<bool> {
-        (self.hit >> lane & 1 != 0).then_some(self.front() >> lane & 1 != 0)
+        (self.decided >> lane & 1 != 0).then_some(self.front() >> lane & 1 != 0)
     }
 }

@@ -138,29 +138,12 @@ impl Triangle {
 
     /// The last tiers; `front` is known if the filter has proven the hit.
     #[inline(always)]
-    fn decide(&self, ray: &PreparedRay, front: Option<bool>) -> Option<Crossing> {
+    pub(crate) fn decide(&self, ray: &PreparedRay, front: Option<bool>) -> Option<Crossing> {
         // Doubles are in hardware on hosts; on chips pairs of floats are several times faster than soft doubles.
         if cfg!(any(target_pointer_width = "64", target_arch = "x86", target_arch = "wasm32")) {
             shortcut::test(self, ray, front)
         } else {
             double::test(self, ray, front)
-        }
-    }
-
-    /// As [`intersect`](Self::intersect), for what the first tier has left open; `front` is known if it is certainly hit. Most of
-    /// that lies outside the limits; the rest may still be proven at another scale.
-    #[cfg(feature = "std")]
-    #[inline(always)]
-    pub(crate) fn intersect_again(
-        &self,
-        ray: &PreparedRay,
-        limits: (f32, f32),
-        front: Option<bool>,
-    ) -> Option<Crossing> {
-        match front {
-            None => self.decide(ray, None),
-            Some(_) if shortcut::is_outside(self, ray, limits) => None,
-            Some(_) => self.intersect(ray, limits.0, limits.1),
         }
     }
 

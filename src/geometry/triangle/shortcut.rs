@@ -2,8 +2,6 @@
 
 use glam::Vec3;
 
-#[cfg(feature = "std")]
-use super::filter::TOLERANCE;
 use super::{Crossing, Sign, Triangle, agreement, exact};
 use crate::geometry::PreparedRay;
 
@@ -42,20 +40,6 @@ fn determinant(x: &[f64; 3], y: &[f64; 3], z: &[f64; 3]) -> Bounded {
     let scale =
         x[0].abs() * (p0.abs() + q0.abs()) + x[1].abs() * (p1.abs() + q1.abs()) + x[2].abs() * (p2.abs() + q2.abs());
     Bounded { value, error: scale * (16.0 * U) }
-}
-
-/// Whether a triangle that is certainly hit is hit outside the limits, whichever tier says where: half the work of [`test`].
-#[cfg(feature = "std")]
-pub(super) fn is_outside(triangle: &Triangle, ray: &PreparedRay, (t_min, t_max): (f32, f32)) -> bool {
-    let origin = ray.ray().origin;
-    let d = ray.ray().direction.to_array().map(f64::from);
-    let (a, b, c) = (between(origin, triangle.a), between(origin, triangle.b), between(origin, triangle.c));
-    let volume = determinant(&a, &b, &c);
-    let area = determinant(&d, &between(triangle.a, triangle.b), &between(triangle.a, triangle.c));
-    let quotient = volume.value / area.value;
-    let error = (volume.error + quotient.abs() * area.error) * 1.01 / (area.value.abs() - area.error)
-        + quotient.abs() * f64::from(2.0 * TOLERANCE);
-    area.value.abs() > 2.0 * area.error && (((quotient + error) as f32) < t_min || ((quotient - error) as f32) > t_max)
 }
 
 pub(super) fn test(triangle: &Triangle, ray: &PreparedRay, front: Option<bool>) -> Option<Crossing> {
