@@ -2,33 +2,34 @@
 
 use std::{
     fs,
-    path::{Path, PathBuf},
+    path::PathBuf,
     process,
     sync::{Mutex, PoisonError},
 };
 
 use crate::failure::note;
 
-/// The code to exit with, as shells have it: 128 and the number of the signal.
+/// The code to exit with, as shells have it after Ctrl-C: 128 and the number of the signal.
 const CODE: i32 = 130;
 
-/// Files that hardly live longer than it takes to write them; most of them are gone.
+/// Files that are being written.
 static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
-/// A file that is to be removed if the program is interrupted.
-pub fn forget_if_interrupted(path: &Path) {
-    UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner).push(path.to_owned());
+/// Does what an interruption may come before or after, but not into: files begin and end to be unfinished.
+pub fn undisturbed<R>(work: impl FnOnce(&mut Vec<PathBuf>) -> R) -> R {
+    work(&mut UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner))
 }
 
-/// From here on, an interrupted program says so. Where no handler can be set, it ends as the system has it.
+/// From here on, an interrupted program says so. Where no handler can be set, or the signals were turned off before (`nohup`),
+/// all stays as it is.
 pub fn listen() {
-    let _ = ctrlc::set_handler(|| {
-        // Kept locked, so that no further file is begun.
+    let _ = ctrlc::try_set_handler(|| {
+        // Kept locked, so that no further file is begun or finished.
         let unfinished = UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner);
         for path in unfinished.iter() {
             let _ = fs::remove_file(path);
         }
-        note("hitscan: interrupted: what was begun is not written\n");
+        note("hitscan: interrupted: what was not finished is not written\n");
         process::exit(CODE);
     });
 }

@@ -88,11 +88,18 @@ fn write_file(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>)
     if let Some(permissions) = permissions {
         temporary.permissions(permissions);
     }
-    let mut file = temporary.tempfile_in(folder.unwrap_or(Path::new(".")))?;
-    interrupt::forget_if_interrupted(file.path());
-    through(file.as_file_mut(), write)?.sync_all()?;
-    file.persist(&target)?;
-    Ok(())
+    let mut file = interrupt::undisturbed(|unfinished| {
+        let file = temporary.tempfile_in(folder.unwrap_or(Path::new(".")))?;
+        unfinished.push(file.path().to_owned());
+        io::Result::Ok(file)
+    })?;
+    let written = through(file.as_file_mut(), write).and_then(|file| file.sync_all());
+    interrupt::undisturbed(|unfinished| {
+        unfinished.retain(|path| path != file.path());
+        written?;
+        file.persist(&target)?;
+        Ok(())
+    })
 }
 
 /// Runs `write` through a buffer and flushes it.

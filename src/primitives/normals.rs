@@ -47,6 +47,8 @@ impl Normals<'_> {
     /// A normal in 16 bits; zero, or what is no number, is no normal.
     #[must_use]
     pub fn packed(normal: Vec3) -> u16 {
+        // By the largest first, so that the sum does not overflow.
+        let normal = normal / normal.abs().max_element();
         let normal = normal / (normal.x.abs() + normal.y.abs() + normal.z.abs());
         if !normal.is_finite() {
             return NONE;

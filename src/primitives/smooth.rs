@@ -1,6 +1,6 @@
 use glam::Vec3;
 
-use super::{Hit, Mesh, Normals, Primitives, Span, Surface};
+use super::{Hit, Mesh, Normals, Primitives, Span, Surface, unit};
 use crate::{
     asset::{Asset, Stored},
     error::Error,
@@ -102,9 +102,7 @@ impl Primitives for Smooth<'_> {
     fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
         let surface = self.mesh.surface(ray, hit);
         match self.normal(&surface, hit.primitive) {
-            Some(normal) => {
-                Surface { shading_normal: above(&surface, ray.direction.normalize_or_zero(), normal), ..surface }
-            }
+            Some(normal) => Surface { shading_normal: above(&surface, unit(ray.direction), normal), ..surface },
             None => surface,
         }
     }

@@ -77,7 +77,8 @@ impl<P: Triangles + Sync> WideBvh<P> {
         built.ok_or(BuildError::TooMany { limit: MAX_TRIANGLES })
     }
 
-    /// As [`new`](Self::new); `tell` hears of progress, from any thread, and may break it off: then there is none.
+    /// As [`new`](Self::new); `tell` hears of progress, from any thread, and may break it off while it grows: then there is none.
+    /// Improving it and packing it come after the last word.
     ///
     /// # Errors
     ///

@@ -13,7 +13,9 @@ pub fn normals_by_place(mesh: &Mesh<'_>) -> Vec<Vec3> {
             *sums.entry(key(corner)).or_insert(Vec3::ZERO) += triangle.normal();
         }
     }
-    let mean = |at: &Vec3| sums.get(&key(*at)).map_or(Vec3::ZERO, |sum| sum.normalize_or_zero());
+    // Scaled first, so that squares neither overflow nor vanish.
+    let unit = |sum: &Vec3| (*sum / sum.abs().max_element()).normalize_or_zero();
+    let mean = |at: &Vec3| sums.get(&key(*at)).map_or(Vec3::ZERO, unit);
     mesh.vertices().iter().map(mean).collect()
 }
 

@@ -65,7 +65,8 @@ impl Geometry {
         Self { vertices, wide, narrow, palette, placements: Vec::new(), y_up: false }
     }
 
-    fn load(path: &Path) -> Result<Self, Failure> {
+    /// The model of a file; what is odd about it is said on standard error.
+    pub fn load(path: &Path) -> Result<Self, Failure> {
         let model = Model::load(path)?;
         for warning in &model.warnings {
             warn(&format!("{}: {warning}", path.display()));

@@ -3,7 +3,7 @@ use std::path::Path;
 use hitscan::{
     Accelerator, Hit, Instance, Instances, Mesh, Primitives, Ray, Scene,
     accel::{Bvh, DualSplit, KdTree, Structure},
-    asset::{Asset, Kind, Stored},
+    asset::{Asset, AssetError, Kind, Stored},
     geometry::Aabb,
     glam::Vec3,
     primitives::{Smooth, Surface},
@@ -221,7 +221,14 @@ fn opened<'a, A: Accelerator + Stored<'a> + Sync, T: Accelerator + Stored<'a> + 
     let begun = std::time::Instant::now();
     let damaged = |error: hitscan::Error| damaged(path, error);
     let meshes: Vec<Mesh<'a>> = parts.iter().map(Asset::read).collect::<Result<_, _>>().map_err(damaged)?;
-    let materials: Vec<Option<Materials<'a>>> = parts.iter().map(|part| part.read().ok()).collect();
+    let materials: Vec<Option<Materials<'a>>> = parts
+        .iter()
+        .map(|part| match part.read() {
+            Err(hitscan::Error::Asset(AssetError::Missing { .. })) => Ok(None),
+            read => read.map(Some),
+        })
+        .collect::<Result<_, _>>()
+        .map_err(damaged)?;
     let normals: Vec<Vec<Vec3>> =
         meshes.iter().map(|mesh| if smooth { normals_by_place(mesh) } else { Vec::new() }).collect();
     let mut scenes = Vec::new();

@@ -125,8 +125,8 @@ impl Shot<'_> {
 
     /// The same, and tells of each band of so many rows that is finished.
     pub(crate) fn rows_with(&self, rows: Range<u32>, done: impl Fn(u32) + Sync) -> Result<Vec<[u8; 3]>, Failure> {
-        /// Rows of pixels that a thread takes at a time.
-        const BAND: u32 = 4;
+        /// Rows of pixels that a thread takes at a time: as many as a patch of a tile has.
+        const BAND: u32 = 8;
         let (width, height) = self.settings.size();
         let [below, above] = self.lighting.background;
         let renderer = Renderer::new(self.scene, self.camera, width, height)

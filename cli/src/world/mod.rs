@@ -41,7 +41,7 @@ use self::file::File;
 use crate::{
     failure::Failure,
     output::{OutputError, write_atomically},
-    scene::{Built, Choice, Geometry, Named, Preset, Source, StructureArgs, broken},
+    scene::{Built, Choice, Geometry, Named, Preset, StructureArgs, broken},
 };
 
 /// A mesh that is placed, with its structure.
@@ -107,13 +107,8 @@ fn part(path: &Path, mesh: &str, structure: &Named, preset: Preset) -> Result<Pa
         plant::grow(seed)
     } else {
         let beside = path.parent().unwrap_or(Path::new("")).join(mesh);
-        match Source::load(&beside)? {
-            Source::Model(geometry) => geometry,
-            Source::Asset { .. } => {
-                let what = format!("{}: is no mesh", beside.display());
-                return Err(Failure::new(what, "name the mesh it was made from"));
-            }
-        }
+        // Neither an asset nor a world, which might be this one.
+        Geometry::load(&beside)?
     };
     let built = Built::named(&geometry.mesh()?, structure, preset, None)?;
     Ok(Part { geometry, built })

@@ -7,7 +7,7 @@ use hitscan::{
 
 use super::file::{File, Place};
 
-/// The most instances: 100 MB of them to a million.
+/// The most instances, 100 MB of them to a million, and the most steps to find them: some may come to nothing.
 const MOST: usize = 1 << 24;
 
 /// A linear map, then a translation.
@@ -21,9 +21,11 @@ pub fn expand(file: &File) -> Result<Places<'_>, String> {
     let mut meshes = Vec::new();
     let mut known = HashMap::new();
     let mut placed = Vec::new();
+    let mut steps = 0;
     let mut work = vec![(&file.place[..], (Mat3::IDENTITY, Vec3::ZERO), 0)];
     while let Some((places, outer, depth)) = work.pop() {
         for place in places {
+            steps += 1;
             let part = file.part.get(&place.part).ok_or_else(|| format!("there is no part {:?}", place.part))?;
             // Without a circle no part can lie deeper than there are parts.
             if depth > file.part.len() {
@@ -47,7 +49,8 @@ pub fn expand(file: &File) -> Result<Places<'_>, String> {
                     }
                     None => work.push((&part.place, at, depth + 1)),
                 }
-                if placed.len() + work.len() > MOST {
+                steps += 1;
+                if steps > MOST {
                     return Err(format!("more than {MOST} places"));
                 }
             }

@@ -249,7 +249,7 @@ fn an_interrupted_program_says_so_and_leaves_nothing() {
         }
         interrupted += 1;
         assert_eq!(output.status.code(), Some(130), "{arguments}: {errors}");
-        assert_eq!(errors, "hitscan: interrupted: what was begun is not written\n", "{arguments}");
+        assert_eq!(errors, "hitscan: interrupted: what was not finished is not written\n", "{arguments}");
         assert_eq!(folder.names(), before, "{arguments}");
     }
     assert!(interrupted >= 6, "{interrupted}");

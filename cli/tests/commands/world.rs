@@ -78,6 +78,13 @@ fn descriptions_that_say_nothing_sensible_are_refused() {
             "line 5: unknown field `colour`",
         ),
         ("[part.a]\nmesh = \"tetrahedron.obj\"\n[[place]]\npart = \"a\"\nat = [nan, 0, 0]\n", "inverted"),
+        ("[part.a]\nmesh = \"bad.toml\"\n[[place]]\npart = \"a\"\n", "bad.toml"),
+        (
+            "[part.a]\nmesh = \"tetrahedron.obj\"\n[part.b]\n[[part.b.place]]\npart = \"a\"\ngrid = [0, 1, 1]\n\
+             [part.c]\n[[part.c.place]]\npart = \"b\"\ngrid = [9999, 1, 1]\n\
+             [[place]]\npart = \"c\"\ngrid = [9999, 1, 1]\n",
+            "places",
+        ),
         ("", "places nothing"),
     ] {
         folder.write("bad.toml", text);

@@ -5,7 +5,7 @@ use std::{mem, vec::Vec};
 use rayon::prelude::*;
 
 use super::{
-    Options,
+    MAX_DEPTH, Options,
     bins::{self, Bins, Grid, Rules},
     division::Division,
     hull::Hull,
@@ -81,12 +81,12 @@ impl<P: Primitives + Sync + ?Sized> Grower<'_, P> {
     /// How to divide a set at the least cost; none if it is to be a leaf.
     fn best(&self, task: &Task<'_>) -> Option<Division> {
         let most = 1 << self.leaf;
-        if task.count <= 1 || (task.count <= most && self.options.sorted == 0) {
+        if task.count <= 1 || (task.count <= most && (self.options.sorted == 0 || task.levels == 0)) {
             return None;
         }
         let must = task.count > most;
         let scale = task.extent.hull.scale();
-        let below = u32::try_from((most as u64) << (task.levels - 1).min(32)).unwrap_or(u32::MAX);
+        let below = u32::try_from((most as u64) << task.levels.saturating_sub(1).min(32)).unwrap_or(u32::MAX);
         let rules = Rules { scale, leaf: self.leaf, most: below };
         let whole = task.extent.hull.weight(scale);
         let pays = |cost: f32| must || cost + whole * self.options.step_cost < whole;
@@ -126,7 +126,12 @@ impl<P: Primitives + Sync + ?Sized> Grower<'_, P> {
         let room = (task.items.len() - task.count) as u32;
         let common = parts[0].intersection(parts[1]);
         let scale = self.whole.scale();
-        if room == 0 || common.is_empty() || common.weight(scale) < OVERLAP * self.whole.weight(scale) {
+        // Cuts may leave more items than the levels left can part, so none are made far down.
+        if room == 0
+            || task.levels <= MAX_DEPTH / 2
+            || common.is_empty()
+            || common.weight(scale) < OVERLAP * self.whole.weight(scale)
+        {
             return None;
         }
         let items = &task.items[..task.count];

@@ -60,7 +60,7 @@ impl<'t> Task<'t> {
         let extents = parts.extents.unwrap_or_else(|| [extent(&items[..left]), extent(&others[..right])]);
         let references = self.references.split_at_mut(border);
         let nodes = self.nodes.split_at_mut(2 * border - 2);
-        let (levels, base) = (self.levels - 1, self.base + 2);
+        let (levels, base) = (self.levels.saturating_sub(1), self.base + 2);
         [
             Self {
                 items,

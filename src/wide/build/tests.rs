@@ -176,6 +176,15 @@ fn hostile(count: usize) -> Vec<(&'static str, Soup)> {
 }
 
 #[test]
+fn a_series_deeper_than_the_rules_stays_within_them() {
+    // Each division leaves out one of them.
+    let soup = Soup::new((0..90).map(|i| [Vec3::X * (2.0_f32.powi(125) / 14.2_f32.powi(i)); 3]));
+    for options in presets().into_iter().chain([Options { leaf_size: 8, sorted: 16, ..Options::balanced() }]) {
+        check(&built(&soup.mesh(), &options), &soup.mesh(), &options);
+    }
+}
+
+#[test]
 fn a_few_primitives() {
     for options in presets() {
         for count in 0..40 {
