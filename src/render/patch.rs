@@ -47,10 +47,12 @@ impl<'a, S: Caster + ?Sized> Patch<'a, S> {
 
     /// Whether something keeps the light of this number from where a shadow ray begins.
     pub(super) fn shades(&self, light: usize, ray: &Ray, depth: u32) -> bool {
-        let Some(occluder) = self.occluders.get(light) else { return self.renderer.scene.any_hit(ray, depth) };
-        let mut last = occluder.get();
+        let occluder = self.occluders.get(light);
+        let mut last = occluder.and_then(Cell::get);
         let shades = self.renderer.scene.any_hit_near(ray, depth, &mut last);
-        occluder.set(last);
+        if let Some(occluder) = occluder {
+            occluder.set(last);
+        }
         shades
     }
 }
