@@ -4,6 +4,14 @@
 
 mod common;
 
+use std::{
+    ops::ControlFlow,
+    sync::{
+        Mutex,
+        atomic::{AtomicU32, Ordering},
+    },
+};
+
 use common::{FAMILIES, Random, adversarial_mesh, adversarial_ray, bits};
 use hitscan::{
     Hit, LatticeMesh, List, Mesh, Ray, Scene,
@@ -123,10 +131,58 @@ fn triangles_that_cannot_be_told_apart_are_divided() {
 }
 
 #[test]
-fn a_triangle_takes_less_than_a_line_of_a_cache() {
+fn neighbours_share_corners() {
     let (vertices, triangles) = hills(100);
     let wide = build(Mesh::new(&vertices, &triangles[..]).unwrap());
-    assert!(wide.bytes() < triangles.len() * 64, "{}", wide.bytes());
+    assert!(wide.bytes() < triangles.len() * 40, "{}", wide.bytes());
+}
+
+#[test]
+fn soups_without_shared_corners_are_packed() {
+    let mut random = Random::new(11);
+    let vertices: Vec<Vec3> = (0..3000).map(|_| point_in(&mut random)).collect();
+    let triangles: Vec<[u32; 3]> = (0..1000).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+    let mesh = Mesh::new(&vertices, &triangles[..]).unwrap();
+    let list = Scene::new(List::new(&mesh).unwrap(), &mesh).unwrap();
+    for leaf_size in [1, 2, 4, 8] {
+        let wide = WideBvh::new(&mesh, &Options { leaf_size, ..Options::fast() }).unwrap();
+        for _ in 0..300 {
+            let ray = Ray::between(point_in(&mut random), point_in(&mut random));
+            assert_eq!(bits(wide.closest_hit(&ray)), bits(list.closest_hit(&ray)));
+        }
+    }
+}
+
+/// A point in the unit cube.
+fn point_in(random: &mut Random) -> Vec3 {
+    Vec3::new(random.unit(), random.unit(), random.unit())
+}
+
+#[test]
+fn a_builder_is_broken_off_at_any_word() {
+    let (vertices, triangles) = hills(80);
+    let mesh = Mesh::new(&vertices, &triangles[..]).unwrap();
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    for options in [Options::fast(), Options::balanced(), Options::best()] {
+        let until = |last: u32| {
+            let (words, seen) = (AtomicU32::new(0), Mutex::new(Vec::new()));
+            let built = pool.install(|| {
+                WideBvh::new_with(&mesh, &options, |progress| {
+                    seen.lock().unwrap().push(progress);
+                    let word = words.fetch_add(1, Ordering::Relaxed);
+                    if word == last { ControlFlow::Break(word) } else { ControlFlow::Continue(()) }
+                })
+            });
+            (built.unwrap().map_continue(|_| ()), seen.into_inner().unwrap())
+        };
+        let (built, seen) = until(u32::MAX);
+        assert!(built.is_continue() && seen.len() > 5);
+        assert!(seen.is_sorted_by_key(|progress| progress.done));
+        assert!(seen.last().is_some_and(|progress| progress.done == progress.total), "{seen:?}");
+        for last in 0..seen.len() as u32 {
+            assert_eq!(until(last).0, ControlFlow::Break(last));
+        }
+    }
 }
 
 #[test]

@@ -206,13 +206,13 @@ impl PreparedRay {
     #[inline(always)]
     pub(crate) fn here(ray: &Ray) -> Option<Self> {
         let (o, d) = (ray.origin, ray.direction);
-        let [x, y, z] = d.to_array().map(magnitude);
+        let (x, y, z) = (magnitude(d.x), magnitude(d.y), magnitude(d.z));
         let (major, largest) = match (y > x, z > if y > x { y } else { x }) {
             (_, true) => (Axis::Z, z),
             (true, false) => (Axis::Y, y),
             (false, false) => (Axis::X, x),
         };
-        let [x, y, z] = o.to_array().map(magnitude);
+        let (x, y, z) = (magnitude(o.x), magnitude(o.y), magnitude(o.z));
         let farthest = x.max(y).max(z);
         // Finite limits spare every primitive the question whether its `t` overflowed; NaN stays what it is.
         let t_min = if ray.t_min < f32::MIN { f32::MIN } else { ray.t_min };

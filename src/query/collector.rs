@@ -32,11 +32,13 @@ pub(crate) trait Collector {
 }
 
 /// The least hit in a ray's interval.
+#[inline(always)]
 pub(crate) const fn start_of(ray: &PreparedRay) -> Hit {
     Hit { t: ray.ray().t_min, primitive: 0 }
 }
 
 /// The hit behind all in a ray's interval; no primitive has its number.
+#[inline(always)]
 pub(crate) const fn end_of(ray: &PreparedRay) -> Hit {
     Hit { t: ray.ray().t_max, primitive: u32::MAX }
 }

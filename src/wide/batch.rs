@@ -165,7 +165,7 @@ impl Runner {
     fn test<S: Simd, A: Answers>(&mut self, simd: S, tree: &Tree, waiting: &Waiting<'_>) -> bool {
         let Some(block) = tree.block(self.child) else { return false };
         let query = Query { simd, tree, ray: &self.ray, shear: ShearLanes::new(simd, &self.ray) };
-        query.improve(block, self.child.count(), &mut self.best);
+        query.improve(block, &mut self.best);
         self.behind = beyond(self.best.t);
         !(A::ANY && self.best.primitive != u32::MAX) && self.next(waiting, self.waiting)
     }

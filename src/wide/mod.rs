@@ -4,15 +4,17 @@
 //! It returns what the others return, bit for bit: boxes are met by the rules R1, R2 and R4 of ARCHITECTURE.md, in `f32`
 //! without fused products; triangles are tested by the first tier of the certified test in eight lanes, and what that leaves
 //! open by the others. Nodes are 256 bytes, the boxes by coordinate (Ernst and Greiner, *Multi bounding volume hierarchies*,
-//! 2008; Wald, Benthin and Boulos, *Getting rid of packets*, 2008); a triangle takes 40 bytes wherever its block ends, because
-//! the lanes behind a block's last triangle are those of what follows and do not count.
+//! 2008; Wald, Benthin and Boulos, *Getting rid of packets*, 2008); blocks keep the corners that their triangles share once ([`block`]).
 //!
 //! Which instructions are used is found out when a structure is built; all give the same bits.
 
 mod batch;
 mod binary;
+mod block;
 mod build;
 mod collapse;
+mod corners;
+mod hull;
 mod node;
 mod permute;
 mod simd;
@@ -21,15 +23,18 @@ mod stack;
 mod tree;
 mod walk;
 
-use std::ops::ControlFlow;
+#[cfg(test)]
+mod tests;
+
+use std::{convert::Infallible, ops::ControlFlow};
 
 use fearless_simd::{Level, dispatch};
 
+use self::{build::Monitor, corners::Corners, node::Child, tree::Tree};
 pub use self::{
     build::{Options, Progress},
     simd::Simd,
 };
-use self::{node::Child, tree::Tree};
 
 use crate::{
     error::BuildError,
@@ -38,8 +43,10 @@ use crate::{
     render::Caster,
 };
 
-/// So many that twice as many references can be numbered.
-const MAX_TRIANGLES: u32 = Child::MAX_TRIANGLES / 2;
+/// So many that blocks of single ones, two for each, have words that can be numbered.
+const MAX_TRIANGLES: u32 = 1 << 26;
+
+const _: () = assert!(2 * MAX_TRIANGLES as usize * block::words(3, 1) <= Child::MAX_WORDS);
 
 /// A BVH of eight boxes a node and up to eight triangles a block, over a copy of the triangles: 48 to 65 bytes each.
 ///
@@ -70,35 +77,58 @@ impl<P: Triangles + Sync> WideBvh<P> {
     /// # Errors
     ///
     /// [`BuildError::Bounds`] names the first triangle that is not finite or beyond 2^126, and [`BuildError::TooMany`] says
-    /// that there are more than 2^27.
+    /// that there are more than 2^26.
     pub fn new(triangles: P, options: &Options) -> Result<Self, BuildError> {
-        let built = Self::new_with(triangles, options, |_| ControlFlow::Continue(()))?;
-        // Only who listens can break it off.
-        built.ok_or(BuildError::TooMany { limit: MAX_TRIANGLES })
+        let ControlFlow::Continue(built) =
+            Self::new_with(triangles, options, |_| ControlFlow::<Infallible>::Continue(()))?;
+        Ok(built)
     }
 
-    /// As [`new`](Self::new); `tell` hears of progress, from any thread, and may break it off while it grows: then there is none.
-    /// Improving it and packing it come after the last word.
+    /// As [`new`](Self::new); `tell` hears of progress, from any thread, and may break it off: then its reason comes back.
+    ///
+    /// ```
+    /// use std::{convert::Infallible, ops::ControlFlow};
+    /// use hitscan::{Mesh, glam::Vec3, wide::{Options, WideBvh}};
+    /// let vertices = [Vec3::ZERO, Vec3::X, Vec3::Y];
+    /// let mesh = Mesh::new(&vertices, &[[0_u16, 1, 2]])?;
+    /// let built = WideBvh::new_with(&mesh, &Options::best(), |progress| {
+    ///     if progress.total > 1_000_000 { ControlFlow::Break("too much work") } else { ControlFlow::Continue(()) }
+    /// })?;
+    /// assert!(built.is_continue());
+    /// # Ok::<(), hitscan::Error>(())
+    /// ```
     ///
     /// # Errors
     ///
     /// As [`new`](Self::new).
-    pub fn new_with(
+    pub fn new_with<B: Send>(
         triangles: P,
         options: &Options,
-        tell: impl Fn(Progress) -> ControlFlow<()> + Sync,
-    ) -> Result<Option<Self>, BuildError> {
+        tell: impl Fn(Progress) -> ControlFlow<B> + Sync,
+    ) -> Result<ControlFlow<B, Self>, BuildError> {
         let count = triangles.len();
         if count > MAX_TRIANGLES {
             return Err(BuildError::TooMany { limit: MAX_TRIANGLES });
         }
-        let Some(binary) = build::build(&triangles, options, &tell)? else { return Ok(None) };
-        let mut tree = collapse::collapse(&binary, |number| triangles.triangle(number));
+        let monitor = Monitor::new(&tell);
+        // Packing comes last.
+        monitor.expect(count);
+        let fits = |numbers: &[u32]| Corners::of(numbers.iter().map(|&number| triangles.triangle(number))).is_some();
+        let tree = match build::build(&triangles, options, &fits, &monitor)? {
+            ControlFlow::Continue(binary) => {
+                collapse::collapse(&binary, count, |number| triangles.triangle(number), &monitor)
+            }
+            ControlFlow::Break(reason) => ControlFlow::Break(reason),
+        };
+        let mut tree = match tree {
+            ControlFlow::Continue(tree) => tree,
+            ControlFlow::Break(reason) => return Ok(ControlFlow::Break(reason)),
+        };
         tree.sides = triangles.sides();
         if (0..count).any(|index| triangles.mask(index) != u32::MAX) {
             tree.masks = (0..count).map(|index| triangles.mask(index)).collect();
         }
-        Ok(Some(Self { tree, level: Level::new(), triangles }))
+        Ok(ControlFlow::Continue(Self { tree, level: Level::new(), triangles }))
     }
 }
 

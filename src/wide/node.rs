@@ -2,11 +2,8 @@ use bytemuck::{Pod, Zeroable};
 
 use crate::geometry::Aabb;
 
-/// How many children a node has room for, and how many triangles a block.
+/// How many children a node has room for, and how many triangles and how many corners a block.
 pub(super) const WIDTH: usize = 8;
-
-/// Words of a triangle in a block: nine coordinates and its number.
-pub(super) const TRIANGLE_WORDS: usize = 10;
 
 /// Eight boxes by their planes, and what is in them: four lines of a cache.
 ///
@@ -40,6 +37,14 @@ impl Node {
         }
     }
 
+    /// Puts its children into these places' order.
+    pub(super) fn permute(&mut self, order: impl Iterator<Item = usize> + Clone) {
+        for row in self.rows.iter_mut().take(CHILDREN + 1) {
+            let old = *row;
+            row.iter_mut().zip(order.clone()).for_each(|(word, place)| *word = old[place]);
+        }
+    }
+
     /// Finds the orders of the children; all are in their places.
     pub(super) fn order(&mut self) {
         for octant in 0..WIDTH {
@@ -52,10 +57,15 @@ impl Node {
                 };
                 near(0) + near(1) + near(2)
             };
-            let mut places: [usize; WIDTH] = core::array::from_fn(|place| place);
-            places.sort_by(|&a, &b| key(b).total_cmp(&key(a)));
-            let order = places.iter().enumerate().map(|(rank, &place)| (place as u32) << (4 * rank));
-            self.rows[ORDERS][octant] = order.sum();
+            let keys: [f32; WIDTH] = core::array::from_fn(key);
+            let mut order = 0;
+            for (place, key) in keys.iter().enumerate() {
+                // Of those that are met at once the later ones come first.
+                let is_before = |other: usize| keys[other] > *key || (keys[other] == *key && other < place);
+                let rank: usize = (0..WIDTH).map(|other| usize::from(is_before(other))).sum();
+                order |= (place as u32) << (4 * rank);
+            }
+            self.rows[ORDERS][octant] = order;
         }
     }
 }
@@ -66,19 +76,18 @@ pub(super) struct Child(pub u32);
 
 impl Child {
     const LEAF: u32 = 1 << 31;
-    const COUNT_SHIFT: u32 = 28;
 
-    /// How many triangles blocks can name.
-    pub(super) const MAX_TRIANGLES: u32 = 1 << Self::COUNT_SHIFT;
+    /// How many words blocks can begin at.
+    pub(super) const MAX_WORDS: usize = 1 << 31;
 
     /// A node.
     pub(super) const fn node(index: u32) -> Self {
         Self(index)
     }
 
-    /// A block of one to eight triangles.
-    pub(super) const fn block(first: u32, count: u32) -> Self {
-        Self(Self::LEAF | (count - 1) << Self::COUNT_SHIFT | first)
+    /// The block that begins at this word.
+    pub(super) const fn block(first: u32) -> Self {
+        Self(Self::LEAF | first)
     }
 
     /// Whether it is a block.
@@ -87,15 +96,9 @@ impl Child {
         self.0 & Self::LEAF != 0
     }
 
-    /// The first triangle of a block, counted through all blocks.
+    /// The first word of a block.
     #[inline(always)]
     pub(super) const fn first(self) -> usize {
-        (self.0 & (Self::MAX_TRIANGLES - 1)) as usize
-    }
-
-    /// The number of triangles in a block, 1 to 8.
-    #[inline(always)]
-    pub(super) const fn count(self) -> usize {
-        (self.0 >> Self::COUNT_SHIFT & 7) as usize + 1
+        (self.0 & !Self::LEAF) as usize
     }
 }

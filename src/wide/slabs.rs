@@ -43,10 +43,8 @@ impl Sides {
     #[inline(always)]
     pub(super) fn of(ray: &PreparedRay) -> Self {
         let [x, y, z, _] = &ray.views;
-        let near = |axis: usize, ascends: bool| 2 * axis + usize::from(!ascends);
-        let near = [near(0, x.ascends()), near(1, y.ascends()), near(2, z.ascends())];
-        let [x, y, z] = near.map(|row| row & 1);
-        Self { near, octant: x | y << 1 | z << 2, slack: slack(ray.ray().t_min) }
+        let (x, y, z) = (usize::from(!x.ascends()), usize::from(!y.ascends()), usize::from(!z.ascends()));
+        Self { near: [x, 2 + y, 4 + z], octant: x | y << 1 | z << 2, slack: slack(ray.ray().t_min) }
     }
 }
 
@@ -54,32 +52,42 @@ impl<S: Simd> Slabs<S> {
     #[inline(always)]
     pub(super) fn new(simd: S, ray: &PreparedRay, sides: Sides) -> Self {
         let [x, y, z, _] = &ray.views;
-        let splat = |x: f32| f32x8::splat(simd, x);
         Self {
             near: sides.near,
-            origin: [x, y, z].map(|view| splat(view.origin)),
-            entry: [x, y, z].map(|view| splat(view.entry)),
-            exit: [x, y, z].map(|view| splat(view.exit)),
-            t_min: splat(ray.ray().t_min),
-            slack: splat(sides.slack),
+            origin: splat(simd, [x.origin, y.origin, z.origin]),
+            entry: splat(simd, [x.entry, y.entry, z.entry]),
+            exit: splat(simd, [x.exit, y.exit, z.exit]),
+            t_min: f32x8::splat(simd, ray.ray().t_min),
+            slack: f32x8::splat(simd, sides.slack),
         }
+    }
+
+    /// Where the ray enters and leaves along an axis.
+    #[inline(always)]
+    fn along(&self, simd: S, node: &Node, axis: usize) -> (f32x8<S>, f32x8<S>) {
+        let near = row(simd, &node.rows[self.near[axis] & 7]);
+        let far = row(simd, &node.rows[(self.near[axis] ^ 1) & 7]);
+        let origin = self.origin[axis];
+        ((near - origin) * self.entry[axis], (far - origin) * self.exit[axis])
     }
 
     /// Which boxes the ray meets, not behind `limit`.
     #[inline(always)]
     pub(super) fn meet(&self, simd: S, node: &Node, limit: f32x8<S>) -> Met<S> {
-        let along = |axis: usize| {
-            let near = row(simd, &node.rows[self.near[axis] & 7]);
-            let far = row(simd, &node.rows[(self.near[axis] ^ 1) & 7]);
-            let origin = self.origin[axis];
-            ((near - origin) * self.entry[axis], (far - origin) * self.exit[axis])
-        };
-        let [(x0, x1), (y0, y1), (z0, z1)] = [along(0), along(1), along(2)];
+        let ((x0, x1), (y0, y1), (z0, z1)) =
+            (self.along(simd, node, 0), self.along(simd, node, 1), self.along(simd, node, 2));
         // Where lanes are NaN, the second operand stays on x86; elsewhere the box is entered, which is as right.
         let enter = z0.max(y0.max(x0.max(self.t_min)));
         let exit = (z1.min(y1.min(x1.min(f32::INFINITY))) + self.slack).min(limit);
         Met { enter, lanes: !enter.simd_gt(exit).to_bitmask() as u32 & 0xff }
     }
+}
+
+/// Each number in all lanes.
+// Written out: what arrays' `map` makes is not inlined into kernels, and has not their instructions.
+#[inline(always)]
+fn splat<S: Simd>(simd: S, [x, y, z]: [f32; 3]) -> [f32x8<S>; 3] {
+    [f32x8::splat(simd, x), f32x8::splat(simd, y), f32x8::splat(simd, z)]
 }
 
 /// The parameter behind which nothing counts, in all lanes.

@@ -1,19 +1,19 @@
 use std::vec::Vec;
 
-use super::node::{Child, Node, TRIANGLE_WORDS, WIDTH};
+use super::{
+    block::Block,
+    node::{Child, Node},
+};
 use crate::{
-    geometry::{Aabb, PreparedRay, Triangle},
+    geometry::{Aabb, PreparedRay},
     primitives::{Hit, Sides, Span},
 };
-
-/// Words that a walk looks at for a block: eight lanes of each row, wherever it begins.
-pub(super) const BLOCK_WORDS: usize = (TRIANGLE_WORDS - 1) * WIDTH + WIDTH;
 
 /// Nodes and blocks of triangles.
 #[derive(Clone, Debug)]
 pub(super) struct Tree {
     pub nodes: Vec<Node>,
-    /// Per block the rows of its triangles, without gaps; behind the last as much again as a walk may look at.
+    /// One after the other, without gaps; behind the last as much again as a walk may look at.
     pub blocks: Vec<u32>,
     /// Where walks begin; none if there is nothing.
     pub root: Option<Child>,
@@ -32,9 +32,6 @@ impl Default for Tree {
     }
 }
 
-/// The rows of a block, from its first word on.
-pub(super) type Block = [u32; BLOCK_WORDS];
-
 impl Tree {
     /// What rays walk through.
     pub(super) fn bytes(&self) -> usize {
@@ -43,8 +40,8 @@ impl Tree {
 
     /// The block, and what lies behind it.
     #[inline(always)]
-    pub(super) fn block(&self, child: Child) -> Option<&Block> {
-        self.blocks.get(child.first() * TRIANGLE_WORDS..)?.first_chunk()
+    pub(super) fn block(&self, child: Child) -> Option<Block<'_>> {
+        self.blocks.get(child.first()..)?.first_chunk().map(Block)
     }
 
     /// Whether a ray sees the triangle of this number.
@@ -58,20 +55,18 @@ impl Tree {
     #[inline(never)]
     pub(super) fn certify(
         &self,
-        block: &Block,
-        (lane, count): (usize, usize),
+        block: Block<'_>,
+        lane: usize,
         front: Option<bool>,
         ray: &PreparedRay,
         span: &Span,
     ) -> Option<Hit> {
-        let word = |row: usize| block.get(row * count + lane).copied().unwrap_or(0);
-        let corner = |i: usize| [3 * i, 3 * i + 1, 3 * i + 2].map(|row| f32::from_bits(word(row))).into();
-        let triangle = Triangle::new(corner(0), corner(1), corner(2));
+        let triangle = block.triangle(lane);
         let crossing = match front {
             Some(_) => triangle.decide(ray, front)?,
             None => triangle.intersect(ray, span.t_min(), span.t_max())?,
         };
-        let number = word(TRIANGLE_WORDS - 1);
+        let number = block.number(lane);
         let is_hit = (crossing.front || self.sides == Sides::Both) && self.is_seen(number, ray);
         if is_hit { span.accept(crossing.t, number) } else { None }
     }

@@ -3,10 +3,11 @@
 use fearless_simd::{Simd, SimdBase};
 
 use super::{
-    node::{CHILDREN, Child, Node, TRIANGLE_WORDS, WIDTH},
-    slabs::{self, Met, Slabs, limit, row},
+    block::Block,
+    node::{CHILDREN, Child, Node, WIDTH},
+    slabs::{self, Met, Slabs, limit},
     stack::{Stack, Waiting},
-    tree::{Block, Tree},
+    tree::Tree,
 };
 use crate::{
     geometry::{PreparedRay, Ray, ShearLanes, beyond},
@@ -59,16 +60,10 @@ pub(super) struct Query<'q, S: Simd> {
 impl<S: Simd> Query<'_, S> {
     /// The least hit with a block's triangles not before the ray begins, if it comes before `best`.
     #[inline(always)]
-    pub(super) fn improve(&self, block: &Block, count: usize, best: &mut Hit) {
+    pub(super) fn improve(&self, block: Block<'_>, best: &mut Hit) {
         let &Self { simd, tree, ray, ref shear } = self;
-        let corners = [0, 1, 2].map(|corner| {
-            shear.axes.map(|axis| {
-                let words = block.get((3 * corner + axis) * count..).and_then(|words| words.first_chunk());
-                row(simd, words.unwrap_or(&[0; WIDTH]))
-            })
-        });
-        let possible = shear.test(corners);
-        let lanes = possible.lanes & (0xff >> (WIDTH - count));
+        let possible = block.test(simd, shear);
+        let lanes = possible.lanes & block.lanes();
         if lanes == 0 {
             return;
         }
@@ -82,7 +77,7 @@ impl<S: Simd> Query<'_, S> {
         while proven != 0 {
             let lane = lane(proven);
             proven &= proven - 1;
-            let number = block.get((TRIANGLE_WORDS - 1) * count + lane).copied().unwrap_or(0);
+            let number = block.number(lane);
             let hit = Hit { t: t[lane], primitive: number };
             if hit.precedes(best) && tree.is_seen(number, ray) {
                 *best = hit;
@@ -93,7 +88,7 @@ impl<S: Simd> Query<'_, S> {
             let lane = lane(open);
             open &= open - 1;
             let span = Span::new(from, *best);
-            if let Some(hit) = tree.certify(block, (lane, count), crossings.is_front(lane), ray, &span) {
+            if let Some(hit) = tree.certify(block, lane, crossings.is_front(lane), ray, &span) {
                 *best = hit;
             }
         }
@@ -122,7 +117,7 @@ pub(super) fn closest<S: Simd>(simd: S, tree: &Tree, ray: &Ray) -> Option<Hit> {
         } else {
             let Some(block) = tree.block(child) else { break };
             let before = best.t;
-            query.improve(block, child.count(), &mut best);
+            query.improve(block, &mut best);
             if best.t < before {
                 end = limit(simd, best.t);
             }
@@ -149,13 +144,13 @@ pub(super) fn any<S: Simd>(simd: S, tree: &Tree, ray: &Ray) -> bool {
             let Some(node) = tree.nodes.get(child.0 as usize) else { return false };
             let lanes = slabs.meet(simd, node, end).lanes;
             if lanes != 0 {
-                child = descend_anyhow(node, lanes, &mut stack);
+                child = descend_in_order(node, lanes, &mut stack);
                 continue;
             }
         } else {
             let Some(block) = tree.block(child) else { return false };
             let mut best = until;
-            query.improve(block, child.count(), &mut best);
+            query.improve(block, &mut best);
             if best.primitive != until.primitive {
                 return true;
             }
@@ -165,15 +160,15 @@ pub(super) fn any<S: Simd>(simd: S, tree: &Tree, ray: &Ray) -> bool {
     }
 }
 
-/// As [`descend`], in any order.
+/// As [`descend`], the one in the highest lane first.
 #[inline(always)]
-fn descend_anyhow(node: &Node, mut lanes: u32, stack: &mut Stack) -> Child {
+fn descend_in_order(node: &Node, mut lanes: u32, stack: &mut Stack) -> Child {
     let children = &node.rows[CHILDREN];
-    let first = Child(children[lane(lanes)]);
-    lanes &= lanes.wrapping_sub(1);
+    let first = lanes.checked_ilog2().unwrap_or(0);
+    lanes ^= 1 << first;
     while lanes != 0 {
         stack.push(Waiting::new(f32::NEG_INFINITY, children[lane(lanes)]));
         lanes &= lanes - 1;
     }
-    first
+    Child(children[first as usize & (WIDTH - 1)])
 }

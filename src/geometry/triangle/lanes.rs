@@ -54,25 +54,28 @@ impl<S: Simd> ShearLanes<S> {
     #[inline(always)]
     pub(crate) fn new(simd: S, ray: &PreparedRay) -> Self {
         let shear = &ray.shear;
-        let splat = |x: f32| f32x8::splat(simd, x);
-        let major = shear.major;
+        let (major, [x, y, z], [sx, sy]) = (shear.major, shear.origin, shear.slope);
         Self {
             axes: [major.next() as usize, major.next().next() as usize, major as usize],
-            origin: shear.origin.map(splat),
-            slope: shear.slope.map(splat),
-            error: splat(shear.error),
+            origin: [f32x8::splat(simd, x), f32x8::splat(simd, y), f32x8::splat(simd, z)],
+            slope: [f32x8::splat(simd, sx), f32x8::splat(simd, sy)],
+            error: f32x8::splat(simd, shear.error),
             inverse: shear.inverse,
         }
     }
 
-    /// Which of the triangles may be hit; the corners' coordinates stand in the order of `axes`.
+    /// Eight points as the ray sees them; their coordinates stand in the order of `axes`.
     #[inline(always)]
-    pub(crate) fn test(&self, [a, b, c]: [[f32x8<S>; 3]; 3]) -> Possible<S> {
+    pub(crate) fn shear(&self, [x, y, z]: [f32x8<S>; 3]) -> [f32x8<S>; 3] {
         let [ox, oy, oz] = self.origin;
         let [sx, sy] = self.slope;
-        let (az, bz, cz) = (a[2] - oz, b[2] - oz, c[2] - oz);
-        let (ax, bx, cx) = ((a[0] - ox) - sx * az, (b[0] - ox) - sx * bz, (c[0] - ox) - sx * cz);
-        let (ay, by, cy) = ((a[1] - oy) - sy * az, (b[1] - oy) - sy * bz, (c[1] - oy) - sy * cz);
+        let z = z - oz;
+        [(x - ox) - sx * z, (y - oy) - sy * z, z]
+    }
+
+    /// Which of the triangles may be hit, whose corners are [sheared](Self::shear).
+    #[inline(always)]
+    pub(crate) fn test(&self, [[ax, ay, az], [bx, by, bz], [cx, cy, cz]]: [[f32x8<S>; 3]; 3]) -> Possible<S> {
         let (u, v, w) = (cx * by - cy * bx, ax * cy - ay * cx, bx * ay - by * ax);
         let lifted = self.error * ((az.abs() + bz.abs()) + cz.abs());
         let spread = ((ax.abs() + ay.abs()) + (bx.abs() + by.abs())) + (cx.abs() + cy.abs());
@@ -119,7 +122,7 @@ impl<S: Simd> ShearLanes<S> {
             let error = error + 1.0e-36;
             let outside = (t + error).simd_lt(t_min) | (t - error).simd_gt(beyond(t_max));
             // A crossing lies between the corners' parameters along the major axis.
-            let [a, b, c] = possible.depths.map(|depth| depth * self.inverse);
+            let (a, b, c) = (az * self.inverse, bz * self.inverse, cz * self.inverse);
             let (first, last) = (a.min(b).min(c), a.max(b).max(c));
             let beside = first.simd_gt(beyond(t_max)) | last.simd_lt(before(t_min));
             open &= !((hit & narrow & outside) | beside).to_bitmask() as u32;

@@ -16,7 +16,7 @@ use glam::Vec3;
 
 use self::filter::{Corner, Verdict};
 #[cfg(feature = "std")]
-pub(crate) use self::lanes::ShearLanes;
+pub(crate) use self::lanes::{Possible, ShearLanes};
 use super::{Aabb, Axis, PreparedRay, moved, ray::beyond};
 use crate::math::{self, greatest, least};
 

@@ -2,7 +2,8 @@
 
 use glam::Vec4;
 
-use super::{hull::Hull, item::Item};
+use super::item::Item;
+use crate::wide::hull::Hull;
 
 /// The most bins per axis.
 pub(super) const MOST: usize = 32;

@@ -1,6 +1,6 @@
 //! From the top down: a set is divided where the surface area heuristic expects the least work.
 
-use std::{mem, vec::Vec};
+use std::{convert::Infallible, mem, ops::ControlFlow, vec::Vec};
 
 use rayon::prelude::*;
 
@@ -8,7 +8,6 @@ use super::{
     MAX_DEPTH, Options,
     bins::{self, Bins, Grid, Rules},
     division::Division,
-    hull::Hull,
     item::Item,
     node::Node,
     partition::CHUNK,
@@ -17,7 +16,13 @@ use super::{
     sweep::{self, Sorted},
     task::{SHARED, Task},
 };
-use crate::primitives::Primitives;
+use crate::{
+    primitives::Primitives,
+    wide::{hull::Hull, node::WIDTH},
+};
+
+/// So few primitives fit into a leaf, whatever they are.
+const SURE: u32 = 2;
 
 /// Sets of fewer items are left to one thread.
 const ALONE: usize = 4096;
@@ -26,50 +31,60 @@ const ALONE: usize = 4096;
 const OVERLAP: f32 = 1.0e-3;
 
 /// What all tasks share.
-pub(super) struct Grower<'g, P: ?Sized> {
+pub(super) struct Grower<'g, P: ?Sized, B> {
     pub(super) primitives: &'g P,
     pub(super) options: &'g Options,
     /// Binary logarithm of the most items in a leaf.
     pub(super) leaf: u32,
     /// The box of everything.
     pub(super) whole: Hull,
-    pub(super) monitor: &'g Monitor<'g>,
+    /// Whether primitives of these numbers can be in one leaf.
+    pub(super) fits: &'g (dyn Fn(&[u32]) -> bool + Sync),
+    pub(super) monitor: &'g Monitor<'g, B>,
 }
 
-impl<P: Primitives + Sync + ?Sized> Grower<'_, P> {
+impl<P: Primitives + Sync + ?Sized, B: Send> Grower<'_, P, B> {
     /// Builds the hierarchy of a set; its root.
-    pub(super) fn grow(&self, task: Task<'_>) -> Node {
+    pub(super) fn grow(&self, task: Task<'_>) -> ControlFlow<B, Node> {
         let size = task.items.len();
         if size <= ALONE {
             let node = self.grow_alone(task);
-            self.monitor.advance(size as u32);
-            return node;
+            self.monitor.advance(size as u32)?;
+            return ControlFlow::Continue(node);
         }
-        if self.monitor.is_stopped() {
-            return Node::leaf(task.extent.hull, task.first, 0);
-        }
-        self.inner(task, |[left, right]| rayon::join(|| self.grow(left), || self.grow(right)))
+        self.monitor.advance(0)?;
+        self.inner(task, |[left, right]| {
+            let (left, right) = rayon::join(|| self.grow(left), || self.grow(right));
+            ControlFlow::Continue([left?, right?])
+        })
     }
 
-    /// As [`grow`](Self::grow), on one thread.
+    /// As [`grow`](Self::grow), on one thread and without a word.
     fn grow_alone(&self, task: Task<'_>) -> Node {
-        self.inner(task, |[left, right]| (self.grow_alone(left), self.grow_alone(right)))
+        let node = self.inner(task, |[left, right]| {
+            ControlFlow::<Infallible, _>::Continue([self.grow_alone(left), self.grow_alone(right)])
+        });
+        let ControlFlow::Continue(node) = node;
+        node
     }
 
     /// A node, its children made by `both`; or a leaf.
-    fn inner(&self, mut task: Task<'_>, both: impl FnOnce([Task<'_>; 2]) -> (Node, Node)) -> Node {
+    fn inner<R>(
+        &self,
+        mut task: Task<'_>,
+        both: impl FnOnce([Task<'_>; 2]) -> ControlFlow<R, [Node; 2]>,
+    ) -> ControlFlow<R, Node> {
         let (hull, first, base) = (task.extent.hull, task.first, task.base);
         let Some(parts) = self.divide(&mut task) else {
             for (reference, item) in task.references.iter_mut().zip(&task.items[..task.count]) {
                 *reference = item.number();
             }
-            return Node::leaf(hull, first, task.count as u32);
+            return ControlFlow::Continue(Node::leaf(hull, first, task.count as u32));
         };
         let (place, nodes) = mem::take(&mut task.nodes).split_at_mut(2);
         task.nodes = nodes;
-        let (left, right) = both(task.split(&parts));
-        place.copy_from_slice(&[left, right]);
-        Node::inner(hull, base)
+        place.copy_from_slice(&both(task.split(&parts))?);
+        ControlFlow::Continue(Node::inner(hull, base))
     }
 
     /// Divides a set; none if it is to be a leaf. Not inlined, so that what it needs is not on the stack of all above.
@@ -78,15 +93,24 @@ impl<P: Primitives + Sync + ?Sized> Grower<'_, P> {
         Some(self.best(task)?.place(task, self.primitives))
     }
 
+    /// Whether items can be in one leaf.
+    fn fits(&self, items: &[Item]) -> bool {
+        if items.len() <= SURE as usize || items.len() > 1 << self.leaf {
+            return items.len() <= 1 << self.leaf;
+        }
+        let numbers: heapless::Vec<u32, WIDTH> = items.iter().map(Item::number).collect();
+        (self.fits)(&numbers)
+    }
+
     /// How to divide a set at the least cost; none if it is to be a leaf.
     fn best(&self, task: &Task<'_>) -> Option<Division> {
-        let most = 1 << self.leaf;
-        if task.count <= 1 || (task.count <= most && (self.options.sorted == 0 || task.levels == 0)) {
+        let must = !self.fits(&task.items[..task.count]);
+        if task.count <= 1 || (!must && (self.options.sorted == 0 || task.levels == 0)) {
             return None;
         }
-        let must = task.count > most;
         let scale = task.extent.hull.scale();
-        let below = u32::try_from((most as u64) << task.levels.saturating_sub(1).min(32)).unwrap_or(u32::MAX);
+        let most = SURE.min(1 << self.leaf);
+        let below = u32::try_from(u64::from(most) << task.levels.saturating_sub(1).min(32)).unwrap_or(u32::MAX);
         let rules = Rules { scale, leaf: self.leaf, most: below };
         let whole = task.extent.hull.weight(scale);
         let pays = |cost: f32| must || cost + whole * self.options.step_cost < whole;

@@ -1,5 +1,5 @@
-use super::hull::Hull;
 use crate::geometry::Aabb;
+use crate::wide::hull::Hull;
 
 /// A reference to a primitive: the box of it, or of a part of it, and its number.
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]

@@ -15,7 +15,6 @@
 mod bins;
 mod division;
 mod grow;
-mod hull;
 mod item;
 mod layout;
 mod node;
@@ -35,6 +34,7 @@ use std::{ops::ControlFlow, vec::Vec};
 use rayon::prelude::*;
 
 pub use options::Options;
+pub(super) use progress::Monitor;
 pub use progress::Progress;
 
 use self::{
@@ -43,7 +43,6 @@ use self::{
     layout::lay_out,
     node::Node,
     partition::CHUNK,
-    progress::Monitor,
     reinsert::reinsert,
     task::{Task, extent},
 };
@@ -53,51 +52,57 @@ use crate::{error::BuildError, primitives::Primitives};
 /// The greatest number of nodes below one another, the root not counted.
 pub(super) const MAX_DEPTH: u32 = 64;
 
-/// The most primitives: what stands for the nodes can still be numbered.
-const MAX_PRIMITIVES: u32 = (1 << 30) - 1;
+/// A round of finding better places is so many times less work than there are primitives.
+const ROUND: u32 = 8;
 
-/// Builds a hierarchy over `primitives`, on the threads of the current `rayon` pool; `tell` hears of progress, and may
-/// break it off.
-pub(super) fn build<P: Primitives + Sync + ?Sized>(
+/// Builds a hierarchy over `primitives`, on the threads of the current `rayon` pool; `monitor` hears of progress, and may
+/// break it off. Leaves have two primitives at most, or more if `fits` says so of their numbers.
+pub(super) fn build<P: Primitives + Sync + ?Sized, B: Send>(
     primitives: &P,
     options: &Options,
-    tell: &(dyn Fn(Progress) -> ControlFlow<()> + Sync),
-) -> Result<Option<Binary>, BuildError> {
-    let count = primitives.len();
-    if count > MAX_PRIMITIVES {
-        return Err(BuildError::TooMany { limit: MAX_PRIMITIVES });
-    }
-    if count == 0 {
-        return Ok(Some(Binary::default()));
-    }
+    fits: &(dyn Fn(&[u32]) -> bool + Sync),
+    monitor: &Monitor<'_, B>,
+) -> Result<ControlFlow<B, Binary>, BuildError> {
     let items = gather(primitives)?;
+    if items.is_empty() {
+        return Ok(ControlFlow::Continue(Binary::default()));
+    }
+    let count = primitives.len();
     let cuts = options.references > 1.0 && (0..count).any(|number| primitives.is_certified(number));
     let size = if cuts { (f64::from(count) * f64::from(options.references.min(2.0))) as usize } else { items.len() };
     // Cuts lead to fewer steps, but not always to less work: large primitives may be better off in one piece near the root.
     let both = cuts && options.reinsertions > 0;
-    let total = if both { size + items.len() } else { size };
-    let monitor = Monitor::new(total as u32, tell);
-    let grower = Growth { primitives, options, monitor: &monitor };
-    let whole = both.then(|| grower.grow(items.clone(), items.len()));
-    let best = grower.grow(items, size);
-    let best = match whole {
-        Some(whole) if whole.cost() <= best.cost() => whole,
-        _ => best,
-    };
-    Ok((!monitor.is_stopped()).then(|| best.finish()))
+    let sizes = [Some(size), both.then_some(items.len())];
+    for size in sizes.into_iter().flatten() {
+        monitor.expect(size as u32 + options.reinsertions.saturating_mul(count / ROUND));
+    }
+    let growth = Growth { primitives, options, fits, monitor };
+    let mut best: Option<Grown> = None;
+    for size in sizes.into_iter().flatten() {
+        let grown = match growth.grow(items.clone(), size) {
+            ControlFlow::Continue(grown) => grown,
+            ControlFlow::Break(reason) => return Ok(ControlFlow::Break(reason)),
+        };
+        best = match best {
+            Some(best) if best.cost() < grown.cost() => Some(best),
+            _ => Some(grown),
+        };
+    }
+    Ok(ControlFlow::Continue(best.map_or_else(Binary::default, |best| best.finish())))
 }
 
 /// What hierarchies over the same primitives have in common.
-struct Growth<'g, P: ?Sized> {
+struct Growth<'g, P: ?Sized, B> {
     primitives: &'g P,
     options: &'g Options,
-    monitor: &'g Monitor<'g>,
+    fits: &'g (dyn Fn(&[u32]) -> bool + Sync),
+    monitor: &'g Monitor<'g, B>,
 }
 
-impl<P: Primitives + Sync + ?Sized> Growth<'_, P> {
+impl<P: Primitives + Sync + ?Sized, B: Send> Growth<'_, P, B> {
     /// The hierarchy over `items`, of at most `size` references.
-    fn grow(&self, mut items: Vec<Item>, size: usize) -> Grown {
-        let &Self { primitives, options, monitor } = self;
+    fn grow(&self, mut items: Vec<Item>, size: usize) -> ControlFlow<B, Grown> {
+        let &Self { primitives, options, fits, monitor } = self;
         let count = items.len();
         let extent = extent(&items);
         items.resize(size, Item::NOTHING);
@@ -105,7 +110,7 @@ impl<P: Primitives + Sync + ?Sized> Growth<'_, P> {
         let mut references = bytemuck::zeroed_vec(size);
         let mut nodes: Vec<Node> = bytemuck::zeroed_vec(size * 2 - 1);
         let leaf = options.leaf_size.clamp(1, 8).next_power_of_two().ilog2();
-        let grower = Grower { primitives, options, leaf, whole: extent.hull, monitor };
+        let grower = Grower { primitives, options, leaf, whole: extent.hull, fits, monitor };
         if let Some((root, below)) = nodes.split_first_mut() {
             *root = grower.grow(Task {
                 items: &mut items,
@@ -117,15 +122,16 @@ impl<P: Primitives + Sync + ?Sized> Growth<'_, P> {
                 base: 1,
                 extent,
                 levels: MAX_DEPTH,
-            });
+            })?;
         }
         let mut grown = Grown { nodes, references };
-        if options.reinsertions > 0 && !monitor.is_stopped() {
+        if options.reinsertions > 0 {
             let (nodes, references) = lay_out(&grown.nodes, &grown.references, |node| node);
             grown = Grown { nodes, references };
-            reinsert(&mut grown.nodes, options.reinsertions, options.reinserted);
+            let round = primitives.len() / ROUND;
+            reinsert(&mut grown.nodes, options.reinsertions, options.reinserted, || monitor.advance(round))?;
         }
-        grown
+        ControlFlow::Continue(grown)
     }
 }
 
@@ -152,10 +158,18 @@ impl Grown {
 
 /// The boxes of all primitives.
 fn gather<P: Primitives + Sync + ?Sized>(primitives: &P) -> Result<Vec<Item>, BuildError> {
-    let numbers = (0..primitives.len()).into_par_iter().with_min_len(CHUNK);
-    let items: Vec<Item> = numbers.clone().map(|number| Item::new(&primitives.bounds(number), number)).collect();
-    match numbers.find_first(|&number| !primitives.bounds(number).is_valid()) {
-        Some(primitive) => Err(BuildError::Bounds { primitive }),
-        None => Ok(items),
-    }
+    let mut items: Vec<Item> = bytemuck::zeroed_vec(primitives.len() as usize);
+    let chunks = items.par_chunks_mut(CHUNK).enumerate();
+    let bad = chunks.filter_map(|(chunk, items)| {
+        let mut bad = None;
+        for (number, item) in ((chunk * CHUNK) as u32..).zip(items) {
+            let bounds = primitives.bounds(number);
+            *item = Item::new(&bounds, number);
+            if bad.is_none() && !bounds.is_valid() {
+                bad = Some(number);
+            }
+        }
+        bad
+    });
+    bad.min().map_or(Ok(items), |primitive| Err(BuildError::Bounds { primitive }))
 }

@@ -1,5 +1,5 @@
-use super::hull::Hull;
 use crate::wide::binary::BinaryNode;
+use crate::wide::hull::Hull;
 
 /// A node while it is built: the same as a [`BinaryNode`], its box in vectors.
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]

@@ -1,41 +1,38 @@
 use std::{
     ops::ControlFlow,
-    sync::atomic::{AtomicBool, AtomicU32, Ordering},
+    sync::atomic::{AtomicU32, Ordering},
 };
 
 /// How far a builder is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Progress {
-    /// References to primitives that have found their places.
+    /// What is done of it.
     pub done: u32,
-    /// How many there may be, in all hierarchies that are tried.
+    /// All work: about one for each primitive and each time that it is looked at.
     pub total: u32,
 }
 
-/// Tells the caller of progress, and remembers whether to stop.
-pub(super) struct Monitor<'f> {
-    tell: &'f (dyn Fn(Progress) -> ControlFlow<()> + Sync),
+/// Tells the caller of progress, and asks whether to go on.
+pub(in crate::wide) struct Monitor<'f, B> {
+    tell: &'f (dyn Fn(Progress) -> ControlFlow<B> + Sync),
     done: AtomicU32,
-    total: u32,
-    is_stopped: AtomicBool,
+    total: AtomicU32,
 }
 
-impl<'f> Monitor<'f> {
-    /// Of `total` references.
-    pub(super) fn new(total: u32, tell: &'f (dyn Fn(Progress) -> ControlFlow<()> + Sync)) -> Self {
-        Self { tell, done: AtomicU32::new(0), total, is_stopped: AtomicBool::new(false) }
+impl<'f, B> Monitor<'f, B> {
+    /// Nothing is done.
+    pub(in crate::wide) const fn new(tell: &'f (dyn Fn(Progress) -> ControlFlow<B> + Sync)) -> Self {
+        Self { tell, done: AtomicU32::new(0), total: AtomicU32::new(0) }
     }
 
-    /// So many more are done.
-    pub(super) fn advance(&self, by: u32) {
+    /// There is so much more to do.
+    pub(in crate::wide) fn expect(&self, work: u32) {
+        self.total.fetch_add(work, Ordering::Relaxed);
+    }
+
+    /// So much more is done; whether to go on.
+    pub(in crate::wide) fn advance(&self, by: u32) -> ControlFlow<B> {
         let done = self.done.fetch_add(by, Ordering::Relaxed) + by;
-        if (self.tell)(Progress { done, total: self.total }).is_break() {
-            self.is_stopped.store(true, Ordering::Relaxed);
-        }
-    }
-
-    /// Whether the caller wants no hierarchy any more.
-    pub(super) fn is_stopped(&self) -> bool {
-        self.is_stopped.load(Ordering::Relaxed)
+        (self.tell)(Progress { done, total: self.total.load(Ordering::Relaxed) })
     }
 }

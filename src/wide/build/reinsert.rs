@@ -3,11 +3,11 @@
 //! Meister and Bittner, *Parallel reinsertion for bounding volume hierarchy optimization*, 2018: all threads look for better
 //! places in the same hierarchy, then the moves are made, the most useful first, unless an earlier one was in the way.
 
-use std::{cmp::Reverse, vec, vec::Vec};
+use std::{cmp::Reverse, ops::ControlFlow, vec, vec::Vec};
 
 use rayon::prelude::*;
 
-use super::{MAX_DEPTH, node::Node};
+use super::{MAX_DEPTH, node::Node, partition::CHUNK};
 
 /// Nodes looked at for each that is taken out: most searches end earlier by themselves.
 const PATIENCE: u32 = 256;
@@ -43,9 +43,14 @@ const fn sibling(node: u32) -> u32 {
 }
 
 /// Improves a hierarchy whose children stand behind their parents, `rounds` times; each time the part `ratio` of its nodes
-/// is looked at, those most likely met by rays.
-pub(super) fn reinsert(nodes: &mut [Node], rounds: u32, ratio: f32) {
-    let Some(root) = nodes.first() else { return };
+/// is looked at, those most likely met by rays. After each round `go_on` is asked.
+pub(super) fn reinsert<B>(
+    nodes: &mut [Node],
+    rounds: u32,
+    ratio: f32,
+    go_on: impl Fn() -> ControlFlow<B>,
+) -> ControlFlow<B> {
+    let Some(root) = nodes.first() else { return ControlFlow::Continue(()) };
     let scale = root.hull().scale();
     let mut tree = Tree { above: vec![Above::default(); nodes.len() / 2], nodes, scale };
     tree.link_upward();
@@ -57,7 +62,9 @@ pub(super) fn reinsert(nodes: &mut [Node], rounds: u32, ratio: f32) {
         for of in &moves {
             tree.make(of, &mut touched);
         }
+        go_on()?;
     }
+    ControlFlow::Continue(())
 }
 
 impl Tree<'_> {
@@ -108,7 +115,7 @@ impl Tree<'_> {
 
     /// The part `ratio` of all nodes, those with the largest boxes.
     fn likely(&self, ratio: f32) -> Vec<u32> {
-        let numbers = 1..self.nodes.len() as u32;
+        let numbers = (1..self.nodes.len() as u32).into_par_iter().with_min_len(CHUNK);
         let mut keys: Vec<u64> =
             numbers.map(|node| u64::from(self.weight(node).to_bits()) << 32 | u64::from(!node)).collect();
         let count = (keys.len() as f32 * ratio) as usize;

@@ -5,10 +5,9 @@ use glam::Vec4;
 
 use super::{
     bins::{ROUND, Rules},
-    hull::Hull,
     item::Item,
 };
-use crate::primitives::Primitives;
+use crate::{primitives::Primitives, wide::hull::Hull};
 
 /// Bins per axis.
 const BINS: usize = 16;

@@ -1,4 +1,5 @@
-use super::{bins::Rules, hull::Hull, item::Item};
+use super::{bins::Rules, item::Item};
+use crate::wide::hull::Hull;
 
 /// The most items that are sorted.
 pub(super) const MOST: usize = 16;

@@ -7,7 +7,7 @@ use std::{
 
 use glam::Vec3;
 
-use super::{MAX_DEPTH, Options, build};
+use super::{MAX_DEPTH, Monitor, Options, Progress, build};
 use crate::{
     accel::List,
     error::BuildError,
@@ -47,8 +47,21 @@ fn presets() -> [Options; 3] {
     [Options::fast(), Options::balanced(), Options::best()]
 }
 
+/// Stands for a rule by which sets of more than two have no room in a leaf.
+fn fits(numbers: &[u32]) -> bool {
+    numbers.iter().sum::<u32>() % 4 > 0
+}
+
+fn try_build<P: Primitives + Sync>(
+    primitives: &P,
+    options: &Options,
+    tell: impl Fn(Progress) -> ControlFlow<()> + Sync,
+) -> Result<ControlFlow<(), Binary>, BuildError> {
+    build(primitives, options, &fits, &Monitor::new(&tell))
+}
+
 fn built<P: Primitives + Sync>(primitives: &P, options: &Options) -> Binary {
-    build(primitives, options, &|_| ControlFlow::Continue(())).unwrap().unwrap()
+    try_build(primitives, options, |_| ControlFlow::Continue(())).unwrap().continue_value().unwrap()
 }
 
 /// What a walk over everything finds: the depth, and the sum over all divisions of the references divided.
@@ -77,6 +90,7 @@ fn check<P: Primitives>(binary: &Binary, primitives: &P, options: &Options) -> S
         if node.count > 0 {
             assert!(node.count <= options.leaf_size && first == next_reference, "{node:?}");
             next_reference += node.count as usize;
+            assert!(node.count <= 2 || fits(&references[first..next_reference]));
             shape.work += u64::from(node.count * depths[place]);
             for &number in &references[first..next_reference] {
                 times[number as usize] += 1;
@@ -348,7 +362,7 @@ fn shapes_of_ones_own_are_not_cut() {
 fn bad_bounds_are_named() {
     let boxes = |i: u32| Aabb::new(Vec3::ZERO, Vec3::splat(if i % 60_000 == 50_000 { f32::NAN } else { 1.0 }));
     let shapes = from_fn(200_000, boxes, |_, _| None);
-    let error = build(&shapes, &Options::fast(), &|_| ControlFlow::Continue(())).unwrap_err();
+    let error = try_build(&shapes, &Options::fast(), |_| ControlFlow::Continue(())).unwrap_err();
     assert_eq!(error, BuildError::Bounds { primitive: 50_000 });
 }
 
@@ -357,14 +371,14 @@ fn progress_is_told_and_stops() {
     let soup = Soup::random(20_000, 0.01);
     for options in presets() {
         let (greatest, total) = (AtomicU32::new(0), AtomicU32::new(0));
-        let binary = build(&soup.mesh(), &options, &|progress| {
+        let binary = try_build(&soup.mesh(), &options, |progress| {
             assert!(progress.done <= progress.total);
             greatest.fetch_max(progress.done, Ordering::Relaxed);
             total.store(progress.total, Ordering::Relaxed);
             ControlFlow::Continue(())
         });
-        assert!(binary.unwrap().is_some());
+        assert!(binary.unwrap().is_continue());
         assert_eq!(greatest.into_inner(), total.into_inner());
-        assert!(build(&soup.mesh(), &options, &|_| ControlFlow::Break(())).unwrap().is_none());
+        assert!(try_build(&soup.mesh(), &options, |_| ControlFlow::Break(())).unwrap().is_break());
     }
 }

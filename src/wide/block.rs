@@ -1,0 +1,105 @@
+//! Up to eight triangles with up to eight different corners.
+//!
+//! Neighbours share corners, so that a block has hardly more of them than triangles. Each is read once, and made ready for the
+//! ray once; permutations hand them out to the lanes of the triangles. The words: for each of a triangle's three corners its places,
+//! three bits a lane, above them how many corners there are, and a bit for each lane that is a triangle; the corners' coordinates along
+//! x, y and z; the triangles' numbers.
+
+use fearless_simd::{Bytes, Simd, SimdBase, f32x8, u32x8};
+
+use super::{corners::Corners, node::WIDTH, permute::permute, slabs::row};
+use crate::geometry::{Possible, ShearLanes, Triangle};
+
+/// Words before the corners.
+const HEAD: usize = 3;
+
+/// Words that a walk may look at, wherever a block ends.
+pub(super) const BLOCK_WORDS: usize = HEAD + 3 * WIDTH + WIDTH;
+
+/// Where a head's words carry something else than places.
+const ABOVE: u32 = 24;
+
+/// The words of a block of so many corners and triangles.
+pub(super) const fn words(corners: usize, triangles: usize) -> usize {
+    HEAD + 3 * corners + triangles
+}
+
+/// A block, and what lies behind it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Block<'t>(pub &'t [u32; BLOCK_WORDS]);
+
+impl Block<'_> {
+    /// How many corners there are.
+    #[inline(always)]
+    const fn corners(self) -> usize {
+        (self.0[0] >> ABOVE) as usize
+    }
+
+    /// A bit for each lane that is a triangle.
+    #[inline(always)]
+    pub(super) const fn lanes(self) -> u32 {
+        self.0[1] >> ABOVE
+    }
+
+    /// The number of a triangle.
+    #[inline(always)]
+    pub(super) fn number(self, lane: usize) -> u32 {
+        self.0.get(HEAD + 3 * self.corners() + lane).copied().unwrap_or(u32::MAX)
+    }
+
+    /// A triangle.
+    pub(super) fn triangle(self, lane: usize) -> Triangle {
+        let [a, b, c] = [0, 1, 2].map(|corner| {
+            let place = (self.0[corner] >> (3 * lane) & 7) as usize;
+            let coordinate = |axis: usize| self.0.get(HEAD + axis * self.corners() + place).copied().unwrap_or(0);
+            [0, 1, 2].map(|axis| f32::from_bits(coordinate(axis))).into()
+        });
+        Triangle::new(a, b, c)
+    }
+
+    /// Which of the triangles may be hit. In lanes that are none there is nothing sensible.
+    // Written out: what arrays' `map` makes is not inlined into kernels, and has not their instructions.
+    #[inline(always)]
+    pub(super) fn test<S: Simd>(self, simd: S, shear: &ShearLanes<S>) -> Possible<S> {
+        let [x, y, z] = shear.axes;
+        let points = shear.shear([self.row(simd, x), self.row(simd, y), self.row(simd, z)]);
+        shear.test([self.pick(simd, 0, points), self.pick(simd, 1, points), self.pick(simd, 2, points)])
+    }
+
+    /// All corners' coordinates along an axis.
+    #[inline(always)]
+    fn row<S: Simd>(self, simd: S, axis: usize) -> f32x8<S> {
+        let words = self.0.get(HEAD + axis * self.corners()..).and_then(|words| words.first_chunk());
+        row(simd, words.unwrap_or(&[0; WIDTH]))
+    }
+
+    /// Of each triangle one corner.
+    #[inline(always)]
+    fn pick<S: Simd>(self, simd: S, corner: usize, [x, y, z]: [f32x8<S>; 3]) -> [f32x8<S>; 3] {
+        let shifts = u32x8::load_array(simd, [0, 3, 6, 9, 12, 15, 18, 21]);
+        let places = simd.shrv_u32x8(u32x8::splat(simd, self.0[corner]), shifts);
+        let x = permute(simd, x.bitcast(), places).bitcast();
+        let y = permute(simd, y.bitcast(), places).bitcast();
+        let z = permute(simd, z.bitcast(), places).bitcast();
+        [x, y, z]
+    }
+}
+
+/// Writes a block, for which `to` has just the room.
+pub(super) fn write(to: &mut [u32], numbers: &[u32], triangles: &[Triangle]) {
+    let (mut corners, mut head) = (Corners::NONE, [0; HEAD]);
+    for (lane, &Triangle { a, b, c }) in triangles.iter().enumerate() {
+        for (places, corner) in head.iter_mut().zip([a, b, c]) {
+            let corner = [corner.x.to_bits(), corner.y.to_bits(), corner.z.to_bits()];
+            *places |= (corners.add(corner).unwrap_or(0) as u32) << (3 * lane);
+        }
+    }
+    head[0] |= (corners.count() as u32) << ABOVE;
+    head[1] |= (0xff >> (WIDTH - numbers.len())) << ABOVE;
+    let mut rest = to;
+    for row in [&head[..]].into_iter().chain(corners.rows()).chain([numbers]) {
+        if let Some(places) = rest.split_off_mut(..row.len()) {
+            places.copy_from_slice(row);
+        }
+    }
+}

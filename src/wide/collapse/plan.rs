@@ -1,0 +1,193 @@
+use std::{vec, vec::Vec};
+
+use crate::{
+    geometry::Triangle,
+    wide::{
+        binary::{Binary, BinaryNode},
+        corners::Corners,
+        hull::Hull,
+        node::WIDTH,
+    },
+};
+
+/// The most triangles in a block.
+const MOST: u32 = WIDTH as u32;
+
+/// What a ray's visit to a node costs.
+pub(super) const NODE: f32 = 1.0;
+
+/// What its visit to a block costs, however many triangles there are in it.
+const BLOCK: f32 = 0.9;
+
+/// What each triangle adds.
+const TRIANGLE: f32 = 0.05;
+
+/// Nodes below one that are left to one thread.
+const ALONE: usize = 8192;
+
+/// What is known of the part below a binary node.
+#[derive(Clone, Copy, Debug, Default)]
+struct Part {
+    /// The least costs as at most 1, 2, … 7 children of a wide node.
+    costs: [f32; WIDTH - 1],
+    /// The references, below bits that say how many corners a block of them has, none if it becomes none.
+    references: u32,
+}
+
+/// Of the binary tree, which parts become what.
+#[derive(Debug)]
+pub(super) struct Plan<'b> {
+    pub binary: &'b Binary,
+    parts: Vec<Part>,
+    /// What makes the longest edge a length of 1, so that costs neither overflow nor vanish.
+    pub scale: f32,
+}
+
+/// What a block of so many triangles costs a ray.
+pub(super) fn block_cost(triangles: u32) -> f32 {
+    BLOCK + TRIANGLE * triangles as f32
+}
+
+impl Part {
+    /// Where the number of corners stands.
+    const CORNERS: u32 = 28;
+
+    fn references(&self) -> u32 {
+        self.references & ((1 << Self::CORNERS) - 1)
+    }
+}
+
+impl<'b> Plan<'b> {
+    /// What costs least, on all threads.
+    pub(super) fn new(binary: &'b Binary, triangle: &(impl Fn(u32) -> Triangle + Sync)) -> Self {
+        let scale = binary.nodes.first().map_or(1.0, |root| Hull::new(&root.bounds, [0, 0]).scale());
+        let mut parts = vec![Part::default(); binary.nodes.len()];
+        if let Some((root, below)) = parts.split_first_mut() {
+            let planner = Planner { binary, triangle, scale };
+            *root = planner.part(&binary.nodes[0], below, 1).0;
+        }
+        Self { binary, parts, scale }
+    }
+
+    /// How likely a ray meets a binary node.
+    pub(super) fn weight(&self, node: usize) -> f32 {
+        Hull::new(&self.binary.nodes[node].bounds, [0, 0]).weight(self.scale)
+    }
+
+    /// Of a binary node that becomes a block the number of its corners, else 0.
+    pub(super) fn corners(&self, node: usize) -> usize {
+        (self.parts[node].references >> Part::CORNERS) as usize
+    }
+
+    /// How many references are below.
+    pub(super) fn references(&self, node: usize) -> u32 {
+        self.parts[node].references()
+    }
+
+    /// The binary nodes that become the children of the wide node in the place of `node`.
+    pub(super) fn children(&self, node: usize) -> heapless::Vec<usize, WIDTH> {
+        let mut children = heapless::Vec::new();
+        let mut open: heapless::Vec<(usize, usize), WIDTH> = heapless::Vec::new();
+        let mut next = Some((node, WIDTH));
+        while let Some((node, mut places)) = next {
+            let costs = &self.parts[node].costs;
+            while places > 1 && places < WIDTH && costs[places - 1] == costs[places - 2] {
+                places -= 1;
+            }
+            next = if places == 1 || self.binary.nodes[node].count > 0 {
+                // No more than the places that were given away.
+                let _ = children.push(node);
+                open.pop()
+            } else {
+                let left = self.binary.nodes[node].first as usize;
+                let of_left = divided([&self.parts[left].costs, &self.parts[left + 1].costs], places).1;
+                let _ = open.push((left + 1, places - of_left));
+                Some((left, of_left))
+            };
+        }
+        children
+    }
+
+    /// The triangles of a block.
+    pub(super) fn triangles(&self, node: usize) -> heapless::Vec<u32, WIDTH> {
+        let mut triangles = heapless::Vec::<u32, WIDTH>::new();
+        let mut open = heapless::Vec::<usize, WIDTH>::new();
+        let mut next = Some(node);
+        while let Some(index) = next {
+            let node = &self.binary.nodes[index];
+            let (first, count) = (node.first as usize, node.count as usize);
+            next = if count == 0 {
+                let _ = open.push(first + 1);
+                Some(first)
+            } else {
+                let _ = triangles.extend_from_slice(&self.binary.references[first..first + count]);
+                open.pop()
+            };
+        }
+        triangles.sort_unstable();
+        // A triangle that was split may be back in one piece.
+        let mut kept = heapless::Vec::new();
+        for triangle in triangles {
+            if kept.last() != Some(&triangle) {
+                let _ = kept.push(triangle);
+            }
+        }
+        kept
+    }
+}
+
+/// The least cost of two parts in this many places, at least two, and how many the first one gets.
+fn divided([left, right]: [&[f32; WIDTH - 1]; 2], places: usize) -> (f32, usize) {
+    let split = |of_left: usize| (left[of_left - 1] + right[places - of_left - 1], of_left);
+    (1..places).map(split).reduce(|a, b| if b.0 < a.0 { b } else { a }).unwrap_or((f32::INFINITY, 1))
+}
+
+/// What the threads share.
+struct Planner<'p, T> {
+    binary: &'p Binary,
+    triangle: &'p T,
+    scale: f32,
+}
+
+impl<T: Fn(u32) -> Triangle + Sync> Planner<'_, T> {
+    /// What is to be known of a node, and its corners if they have room in a block; `below` are the nodes below it, of which the
+    /// first has the number `base`.
+    fn part(&self, node: &BinaryNode, below: &mut [Part], base: usize) -> (Part, Option<Corners>) {
+        let weight = Hull::new(&node.bounds, [0, 0]).weight(self.scale);
+        if node.count > 0 {
+            let references = &self.binary.references[node.first as usize..][..node.count as usize];
+            let corners = Corners::of(references.iter().map(|&number| (self.triangle)(number)));
+            let count = corners.map_or(0, |corners| corners.count() as u32);
+            let costs = [weight * block_cost(node.count); WIDTH - 1];
+            return (Part { costs, references: count << Part::CORNERS | node.count }, corners);
+        }
+        let nodes = &self.binary.nodes[base..][..2];
+        let (pair, below) = below.split_at_mut(2);
+        // Depth first: what is below the left one comes before what is below the right one.
+        let base = base + 2;
+        let border = if nodes[1].count > 0 { below.len() } else { nodes[1].first as usize - base };
+        let together = below.len() > ALONE;
+        let (of_left, of_right) = below.split_at_mut(border);
+        let mut left = || self.part(&nodes[0], of_left, base);
+        let mut right = || self.part(&nodes[1], of_right, base + border);
+        let ((left, corners), (right, others)) = if together { rayon::join(left, right) } else { (left(), right()) };
+        pair.copy_from_slice(&[left, right]);
+        let references = left.references() + right.references();
+        let corners =
+            if references > MOST { None } else { corners.zip(others).and_then(|(all, others)| all.union(&others)) };
+        let mut part = Part { costs: [0.0; WIDTH - 1], references };
+        let sides = [&left.costs, &right.costs];
+        part.costs[0] = weight * NODE + divided(sides, WIDTH).0;
+        if let Some(corners) = &corners {
+            let cost = weight * block_cost(references);
+            if cost <= part.costs[0] {
+                part.costs[0] = cost;
+                part.references |= (corners.count() as u32) << Part::CORNERS;
+            }
+        }
+        for places in 2..WIDTH {
+            part.costs[places - 1] = part.costs[places - 2].min(divided(sides, places).0);
+        }
+        (part, corners)
+    }
+}

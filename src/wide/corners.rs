@@ -1,0 +1,66 @@
+use super::node::WIDTH;
+use crate::geometry::Triangle;
+
+/// The different corners of a few triangles, by their bits.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Corners {
+    /// By axis; behind the last corner what no corner is.
+    coordinates: [[u32; WIDTH]; 3],
+    count: usize,
+}
+
+impl Corners {
+    /// No corners.
+    pub(super) const NONE: Self = Self { coordinates: [[u32::MAX; WIDTH]; 3], count: 0 };
+
+    /// Those of `triangles`; none if they are more than a block has room for.
+    pub(super) fn of(triangles: impl IntoIterator<Item = Triangle>) -> Option<Self> {
+        let mut corners = Self::NONE;
+        for Triangle { a, b, c } in triangles {
+            for corner in [a, b, c] {
+                corners.add([corner.x.to_bits(), corner.y.to_bits(), corner.z.to_bits()])?;
+            }
+        }
+        Some(corners)
+    }
+
+    /// The place of a corner, which is added if it is a new one; none if there is no room.
+    #[inline]
+    pub(super) fn add(&mut self, corner: [u32; 3]) -> Option<usize> {
+        let [x, y, z] = &self.coordinates;
+        let mut found = 0;
+        // All places at once: no branches, and one of them at most is the same.
+        for place in 0..WIDTH {
+            let is_same = (x[place] == corner[0]) & (y[place] == corner[1]) & (z[place] == corner[2]);
+            found |= if is_same { place as u32 + 1 } else { 0 };
+        }
+        if found > 0 {
+            return Some(found as usize - 1);
+        }
+        let place = self.count;
+        for (row, coordinate) in self.coordinates.iter_mut().zip(corner) {
+            *row.get_mut(place)? = coordinate;
+        }
+        self.count += 1;
+        Some(place)
+    }
+
+    /// Those of both, if there is room.
+    pub(super) fn union(mut self, other: &Self) -> Option<Self> {
+        let [x, y, z] = &other.coordinates;
+        for place in 0..other.count {
+            self.add([x[place], y[place], z[place]])?;
+        }
+        Some(self)
+    }
+
+    /// How many there are.
+    pub(super) const fn count(&self) -> usize {
+        self.count
+    }
+
+    /// The bits of their coordinates, by axis.
+    pub(super) fn rows(&self) -> impl Iterator<Item = &[u32]> {
+        self.coordinates.iter().map(|row| &row[..self.count])
+    }
+}

@@ -1,0 +1,78 @@
+use std::{vec, vec::Vec};
+
+use glam::Vec3;
+
+use super::{Options, WideBvh, node::CHILDREN};
+use crate::{primitives::Mesh, testing::Random};
+
+/// Hills of `side` x `side` x 2 triangles, some corners of which are moved.
+fn rough_hills(side: u32, size: f32) -> (Vec<Vec3>, Vec<[u32; 3]>) {
+    let mut random = Random::new(1);
+    let points = (0..=side).flat_map(|j| (0..=side).map(move |i| (i as f32, j as f32)));
+    let vertices = points.map(|(x, z)| Vec3::new(x, random.unit() * 3.0, z) / side as f32 * size).collect();
+    let cells = (0..side).flat_map(|j| (0..side).map(move |i| j * (side + 1) + i));
+    (vertices, cells.flat_map(|a| [[a, a + 1, a + side + 1], [a + 1, a + side + 2, a + side + 1]]).collect())
+}
+
+fn presets() -> [Options; 3] {
+    [Options::fast(), Options::balanced(), Options::best()]
+}
+
+#[test]
+fn any_number_of_threads_packs_the_same() {
+    // Enough for several parts and for the passes of all threads together.
+    let (vertices, triangles) = rough_hills(200, 1.0);
+    let mesh = Mesh::new(&vertices, &triangles[..]).unwrap();
+    for options in presets() {
+        let trees = [1, 2, 3, 7, 64].map(|threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| WideBvh::new(&mesh, &options).unwrap().tree)
+        });
+        let first = &trees[0];
+        assert!(first.nodes.len() > 1000);
+        for tree in &trees {
+            assert!(tree.nodes.iter().zip(&first.nodes).all(|(node, other)| node.rows == other.rows));
+            assert!(tree.blocks == first.blocks && tree.nodes.len() == first.nodes.len() && tree.stack == first.stack);
+        }
+    }
+}
+
+#[test]
+fn scenes_of_any_size_become_the_same_tree() {
+    let tree = |exponent: i32| {
+        let (vertices, triangles) = rough_hills(60, 2.0_f64.powi(exponent) as f32);
+        WideBvh::new(Mesh::new(&vertices, &triangles[..]).unwrap(), &Options::balanced()).unwrap().tree
+    };
+    let usual = tree(0);
+    for exponent in [60, -60, 90, -90, 126, -110] {
+        let other = tree(exponent);
+        let rows = |nodes: &[super::node::Node]| -> Vec<_> { nodes.iter().map(|node| node.rows[CHILDREN]).collect() };
+        assert!(rows(&other.nodes) == rows(&usual.nodes), "{exponent}");
+    }
+}
+
+#[test]
+fn every_triangle_is_in_a_block_of_each_number_it_has() {
+    let (vertices, triangles) = rough_hills(50, 1.0);
+    let mesh = Mesh::new(&vertices, &triangles[..]).unwrap();
+    for options in presets() {
+        let tree = WideBvh::new(&mesh, &options).unwrap().tree;
+        let mut found = vec![0; triangles.len()];
+        for &child in tree.nodes.iter().flat_map(|node| &node.rows[CHILDREN]) {
+            let child = super::node::Child(child);
+            // The first block stands in empty places, too.
+            if !child.is_block() || child.first() == 0 {
+                continue;
+            }
+            let block = tree.block(child).unwrap();
+            for lane in 0..block.lanes().count_ones() as usize {
+                let number = block.number(lane);
+                assert_eq!(block.triangle(lane), mesh.triangle(number));
+                found[number as usize] += 1;
+            }
+        }
+        let first = tree.block(super::node::Child::block(0)).unwrap();
+        (0..first.lanes().count_ones() as usize).for_each(|lane| found[first.number(lane) as usize] += 1);
+        assert!(found.iter().all(|&times| times > 0));
+    }
+}
