@@ -2,8 +2,8 @@
 //!
 //! Neighbours share corners, so that a block has hardly more of them than triangles. Each is read once, and made ready for the
 //! ray once; permutations hand them out to the lanes of the triangles. The words: for each of a triangle's three corners its places,
-//! three bits a lane, above them how many corners there are, and a bit for each lane that is a triangle; the corners' coordinates along
-//! x, y and z; the triangles' numbers.
+//! three bits a lane, above the first a bit for each lane that is a triangle; the corners' coordinates along x, y and z; the triangles'
+//! numbers. How many corners there are says whoever names the block, so that all rows can be read at once.
 
 use fearless_simd::{Bytes, Simd, SimdBase, f32x8, u32x8};
 
@@ -16,42 +16,46 @@ const HEAD: usize = 3;
 /// Words that a walk may look at, wherever a block ends.
 pub(super) const BLOCK_WORDS: usize = HEAD + 3 * WIDTH + WIDTH;
 
-/// Where a head's words carry something else than places.
+/// Where the head's words carry something else than places.
 const ABOVE: u32 = 24;
 
-/// The words of a block of so many corners and triangles.
+/// The words of a block of so many corners and triangles, an even number.
 pub(super) const fn words(corners: usize, triangles: usize) -> usize {
-    HEAD + 3 * corners + triangles
+    (HEAD + 3 * corners + triangles).next_multiple_of(2)
 }
 
-/// A block, and what lies behind it.
+/// A block.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Block<'t>(pub &'t [u32; BLOCK_WORDS]);
+pub(super) struct Block<'t> {
+    /// Its words, and what lies behind it.
+    words: &'t [u32; BLOCK_WORDS],
+    corners: usize,
+}
 
-impl Block<'_> {
-    /// How many corners there are.
+impl<'t> Block<'t> {
+    /// A block of so many corners.
     #[inline(always)]
-    const fn corners(self) -> usize {
-        (self.0[0] >> ABOVE) as usize
+    pub(super) const fn new(words: &'t [u32; BLOCK_WORDS], corners: usize) -> Self {
+        Self { words, corners }
     }
 
     /// A bit for each lane that is a triangle.
     #[inline(always)]
     pub(super) const fn lanes(self) -> u32 {
-        self.0[1] >> ABOVE
+        self.words[0] >> ABOVE
     }
 
     /// The number of a triangle.
     #[inline(always)]
     pub(super) fn number(self, lane: usize) -> u32 {
-        self.0.get(HEAD + 3 * self.corners() + lane).copied().unwrap_or(u32::MAX)
+        self.words.get(HEAD + 3 * self.corners + lane).copied().unwrap_or(u32::MAX)
     }
 
     /// A triangle.
     pub(super) fn triangle(self, lane: usize) -> Triangle {
         let [a, b, c] = [0, 1, 2].map(|corner| {
-            let place = (self.0[corner] >> (3 * lane) & 7) as usize;
-            let coordinate = |axis: usize| self.0.get(HEAD + axis * self.corners() + place).copied().unwrap_or(0);
+            let place = (self.words[corner] >> (3 * lane) & 7) as usize;
+            let coordinate = |axis: usize| self.words.get(HEAD + axis * self.corners + place).copied().unwrap_or(0);
             [0, 1, 2].map(|axis| f32::from_bits(coordinate(axis))).into()
         });
         Triangle::new(a, b, c)
@@ -69,7 +73,7 @@ impl Block<'_> {
     /// All corners' coordinates along an axis.
     #[inline(always)]
     fn row<S: Simd>(self, simd: S, axis: usize) -> f32x8<S> {
-        let words = self.0.get(HEAD + axis * self.corners()..).and_then(|words| words.first_chunk());
+        let words = self.words.get(HEAD + axis * self.corners..).and_then(|words| words.first_chunk());
         row(simd, words.unwrap_or(&[0; WIDTH]))
     }
 
@@ -77,7 +81,7 @@ impl Block<'_> {
     #[inline(always)]
     fn pick<S: Simd>(self, simd: S, corner: usize, [x, y, z]: [f32x8<S>; 3]) -> [f32x8<S>; 3] {
         let shifts = u32x8::load_array(simd, [0, 3, 6, 9, 12, 15, 18, 21]);
-        let places = simd.shrv_u32x8(u32x8::splat(simd, self.0[corner]), shifts);
+        let places = simd.shrv_u32x8(u32x8::splat(simd, self.words[corner]), shifts);
         let x = permute(simd, x.bitcast(), places).bitcast();
         let y = permute(simd, y.bitcast(), places).bitcast();
         let z = permute(simd, z.bitcast(), places).bitcast();
@@ -94,8 +98,7 @@ pub(super) fn write(to: &mut [u32], numbers: &[u32], triangles: &[Triangle]) {
             *places |= (corners.add(corner).unwrap_or(0) as u32) << (3 * lane);
         }
     }
-    head[0] |= (corners.count() as u32) << ABOVE;
-    head[1] |= (0xff >> (WIDTH - numbers.len())) << ABOVE;
+    head[0] |= (0xff >> (WIDTH - numbers.len())) << ABOVE;
     let mut rest = to;
     for row in [&head[..]].into_iter().chain(corners.rows()).chain([numbers]) {
         if let Some(places) = rest.split_off_mut(..row.len()) {

@@ -43,12 +43,15 @@ use crate::{
     render::Caster,
 };
 
-/// So many that blocks of single ones, two for each, have words that can be numbered.
+/// The most triangles.
 const MAX_TRIANGLES: u32 = 1 << 26;
 
-const _: () = assert!(2 * MAX_TRIANGLES as usize * block::words(3, 1) <= Child::MAX_WORDS);
+/// So many always have room, even if there are two references to each and no corner is shared.
+const SURE_TRIANGLES: u32 = 1 << 24;
 
-/// A BVH of eight boxes a node and up to eight triangles a block, over a copy of the triangles: 48 to 65 bytes each.
+const _: () = assert!(2 * SURE_TRIANGLES as usize * block::words(3, 1) <= Child::MAX_WORDS);
+
+/// A BVH of eight boxes a node and up to eight triangles a block, over a copy of the triangles: about 35 bytes each where they share corners.
 ///
 /// ```
 /// use hitscan::{Mesh, Ray, glam::Vec3, wide::{Options, WideBvh}};
@@ -77,7 +80,7 @@ impl<P: Triangles + Sync> WideBvh<P> {
     /// # Errors
     ///
     /// [`BuildError::Bounds`] names the first triangle that is not finite or beyond 2^126, and [`BuildError::TooMany`] says
-    /// that there are more than 2^26.
+    /// that there are more than 2^26, or more than 2^24 that share too few corners.
     pub fn new(triangles: P, options: &Options) -> Result<Self, BuildError> {
         let ControlFlow::Continue(built) =
             Self::new_with(triangles, options, |_| ControlFlow::<Infallible>::Continue(()))?;
@@ -116,12 +119,12 @@ impl<P: Triangles + Sync> WideBvh<P> {
         let fits = |numbers: &[u32]| Corners::of(numbers.iter().map(|&number| triangles.triangle(number))).is_some();
         let tree = match build::build(&triangles, options, &fits, &monitor)? {
             ControlFlow::Continue(binary) => {
-                collapse::collapse(&binary, count, |number| triangles.triangle(number), &monitor)
+                collapse::collapse(&binary, options.byte_price, count, |number| triangles.triangle(number), &monitor)
             }
             ControlFlow::Break(reason) => ControlFlow::Break(reason),
         };
         let mut tree = match tree {
-            ControlFlow::Continue(tree) => tree,
+            ControlFlow::Continue(tree) => tree.ok_or(BuildError::TooMany { limit: SURE_TRIANGLES })?,
             ControlFlow::Break(reason) => return Ok(ControlFlow::Break(reason)),
         };
         tree.sides = triangles.sides();

@@ -37,14 +37,6 @@ impl Node {
         }
     }
 
-    /// Puts its children into these places' order.
-    pub(super) fn permute(&mut self, order: impl Iterator<Item = usize> + Clone) {
-        for row in self.rows.iter_mut().take(CHILDREN + 1) {
-            let old = *row;
-            row.iter_mut().zip(order.clone()).for_each(|(word, place)| *word = old[place]);
-        }
-    }
-
     /// Finds the orders of the children; all are in their places.
     pub(super) fn order(&mut self) {
         for octant in 0..WIDTH {
@@ -77,17 +69,19 @@ pub(super) struct Child(pub u32);
 impl Child {
     const LEAF: u32 = 1 << 31;
 
-    /// How many words blocks can begin at.
-    pub(super) const MAX_WORDS: usize = 1 << 31;
+    const CORNERS: u32 = 28;
+
+    /// Words in which blocks can begin, at even ones.
+    pub(super) const MAX_WORDS: usize = 2 << Self::CORNERS;
 
     /// A node.
     pub(super) const fn node(index: u32) -> Self {
         Self(index)
     }
 
-    /// The block that begins at this word.
-    pub(super) const fn block(first: u32) -> Self {
-        Self(Self::LEAF | first)
+    /// The block of so many corners, 1 to 8, that begins at this word, an even one.
+    pub(super) const fn block(first: usize, corners: usize) -> Self {
+        Self(Self::LEAF | (corners as u32 - 1) << Self::CORNERS | (first / 2) as u32)
     }
 
     /// Whether it is a block.
@@ -99,6 +93,12 @@ impl Child {
     /// The first word of a block.
     #[inline(always)]
     pub(super) const fn first(self) -> usize {
-        (self.0 & !Self::LEAF) as usize
+        (self.0 & ((1 << Self::CORNERS) - 1)) as usize * 2
+    }
+
+    /// How many corners a block has.
+    #[inline(always)]
+    pub(super) const fn corners(self) -> usize {
+        (self.0 >> Self::CORNERS & 7) as usize + 1
     }
 }

@@ -41,7 +41,8 @@ impl Tree {
     /// The block, and what lies behind it.
     #[inline(always)]
     pub(super) fn block(&self, child: Child) -> Option<Block<'_>> {
-        self.blocks.get(child.first()..)?.first_chunk().map(Block)
+        let words = self.blocks.get(child.first()..)?.first_chunk()?;
+        Some(Block::new(words, child.corners()))
     }
 
     /// Whether a ray sees the triangle of this number.

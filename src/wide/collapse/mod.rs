@@ -8,7 +8,7 @@ mod plan;
 mod sketch;
 mod write;
 
-use std::{ops::ControlFlow, vec, vec::Vec};
+use std::{iter, ops::ControlFlow, vec::Vec};
 
 use bytemuck::zeroed_vec;
 use rayon::prelude::*;
@@ -16,7 +16,7 @@ use rayon::prelude::*;
 use self::{
     plan::Plan,
     sketch::{Left, Sketch},
-    write::{Outlook, Places},
+    write::Places,
 };
 use super::{
     binary::Binary,
@@ -30,16 +30,17 @@ use crate::geometry::Triangle;
 /// Parts of so many references are left to one thread.
 const ALONE: u32 = 8192;
 
-/// The wide tree within `binary`; when it is done, so much `work` is done.
+/// The wide tree within `binary`, if its blocks can be named. `price` is what bytes cost; when it is done, so much `work` is done.
 pub(super) fn collapse<B: Send>(
     binary: &Binary,
+    price: f32,
     work: u32,
     triangle: impl Fn(u32) -> Triangle + Sync,
     monitor: &Monitor<'_, B>,
-) -> ControlFlow<B, Tree> {
+) -> ControlFlow<B, Option<Tree>> {
     let mut tree = Tree::default();
-    let Some(root) = binary.nodes.first() else { return ControlFlow::Continue(tree) };
-    let plan = Plan::new(binary, &triangle);
+    let Some(root) = binary.nodes.first() else { return ControlFlow::Continue(Some(tree)) };
+    let plan = Plan::new(binary, price, &triangle);
     monitor.advance(0)?;
 
     // A tree of one part is all top.
@@ -54,28 +55,19 @@ pub(super) fn collapse<B: Send>(
         words += part.words;
         top.depth = top.depth.max(depth + part.depth);
     }
+    if words > Child::MAX_WORDS {
+        return ControlFlow::Continue(None);
+    }
     (tree.root, tree.bounds, tree.stack) = (Some(Child::node(0)), root.bounds, (WIDTH - 1) * top.depth + 1);
     // Behind the last block there is as much as a walk may look at.
     (tree.nodes, tree.blocks) = (zeroed_vec(count), zeroed_vec(words + BLOCK_WORDS));
-    let mut of_top = vec![Outlook::default(); top.nodes.len()];
-    let mut outlooks = vec![Outlook::default(); count - top.nodes.len()];
-
     let (nodes, words) = (&mut tree.nodes[..], &mut tree.blocks[..]);
-    let mut rest = Places { nodes, words, outlooks: &mut of_top, first_node: 0, first_word: 0 };
-    let mut places = rest.split_off(&top);
-    let mut rest = Places {
-        nodes: rest.nodes,
-        words: rest.words,
-        outlooks: &mut outlooks,
-        first_node: rest.first_node,
-        first_word: rest.first_word,
-    };
-    let tasks: Vec<_> = parts.iter().map(|part| (rest.split_off(part), part)).collect();
-    tasks.into_par_iter().try_for_each(|(mut places, part)| {
-        places.write(&plan, part, &triangle, &[]);
+    let mut rest = Places { nodes, words, first_node: 0, first_word: 0 };
+    let tasks: Vec<_> = iter::once(&top).chain(&parts).map(|part| (rest.split_off(part), part)).collect();
+    tasks.into_par_iter().try_for_each(|(places, part)| {
+        places.write(&plan, part, &triangle);
         monitor.advance(0)
     })?;
-    places.write(&plan, &top, &triangle, &outlooks);
     monitor.advance(work)?;
-    ControlFlow::Continue(tree)
+    ControlFlow::Continue(Some(tree))
 }

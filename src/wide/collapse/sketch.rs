@@ -24,8 +24,6 @@ pub(super) struct Sketch {
 /// A node of a [`Sketch`].
 #[derive(Debug)]
 pub(super) struct Sketched {
-    /// The binary node that it stands for.
-    pub root: usize,
     /// The binary nodes that became its children.
     pub children: heapless::Vec<usize, WIDTH>,
     /// What they are, counted from the sketch's first node and word.
@@ -64,14 +62,15 @@ impl Sketch {
             }
             sketch.depth = sketch.depth.max(depth + 1);
             let children = if plan.corners(root) > 0 { heapless::Vec::from_array([root]) } else { plan.children(root) };
-            let mut node = Sketched { root, children, named: [Child::node(0); WIDTH], counts: [0; WIDTH] };
-            for (place, &child) in node.children.iter().enumerate() {
+            let mut node = Sketched { children, named: [Child::node(0); WIDTH], counts: [0; WIDTH] };
+            // Where a walk goes first, that comes first, too.
+            for (place, &child) in node.children.iter().enumerate().rev() {
                 if plan.corners(child) > 0 {
                     (node.named[place], node.counts[place]) = sketch.block(plan, child);
                 }
             }
             let inner = node.children.iter().enumerate().filter(|&(_, &child)| plan.corners(child) == 0);
-            open.extend(inner.map(|(place, &child)| (child, Some((index, place)), depth + 1)).rev());
+            open.extend(inner.map(|(place, &child)| (child, Some((index, place)), depth + 1)));
             sketch.nodes.push(node);
         }
         sketch
@@ -80,8 +79,9 @@ impl Sketch {
     /// Adds a block, and how many triangles it has.
     fn block(&mut self, plan: &Plan<'_>, node: usize) -> (Child, u8) {
         let triangles = plan.triangles(node);
-        let block = Child::block(self.words as u32);
-        self.words += block::words(plan.corners(node), triangles.len());
+        let corners = plan.corners(node);
+        let block = Child::block(self.words, corners);
+        self.words += block::words(corners, triangles.len());
         self.triangles.extend_from_slice(&triangles);
         (block, triangles.len() as u8)
     }
