@@ -11,6 +11,7 @@ mod line;
 mod met;
 mod open;
 mod options;
+mod order;
 mod resolution;
 mod traverse;
 
