@@ -48,6 +48,25 @@ impl<'a> References<'a> {
     }
 }
 
+impl References<'_> {
+    /// The numbers behind a reference and the next one, if there are both.
+    #[inline(always)]
+    pub(crate) fn pair(&self, index: u32) -> Option<(u32, u32)> {
+        let index = index as usize;
+        match self {
+            Self::Narrow(halves) if SECOND_FIRST == 0 => match halves.get(index..index.wrapping_add(2))? {
+                &[first, second] => Some((u32::from(first), u32::from(second))),
+                _ => None,
+            },
+            Self::Narrow(_) => Some((self.get(index as u32), self.get(index as u32 + 1))),
+            Self::Wide(words) => match words.get(index..index.wrapping_add(2))? {
+                &[first, second] => Some((first, second)),
+                _ => None,
+            },
+        }
+    }
+}
+
 /// What turns around the halves of a word where its upper half comes first in memory.
 const SECOND_FIRST: u32 = cfg!(target_endian = "big") as u32;
 

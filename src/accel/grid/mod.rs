@@ -138,8 +138,8 @@ impl<'a> Accelerator for Grid<'a> {
     }
 
     #[inline]
-    fn traverse(&self, _: &PreparedRay) -> GridTraversal<'a> {
-        GridTraversal::new(self)
+    fn traverse(&self, ray: &PreparedRay) -> GridTraversal<'a> {
+        GridTraversal::new(self, ray)
     }
 }
 

@@ -27,8 +27,13 @@ impl<'a> KdTree<'a> {
     pub fn ordered_words(&self) -> impl Iterator<Item = u32> + use<'a> {
         // A walk's words cannot name more than a link's bits can.
         let primitives = self.leaves().fold(0_u32, |sum, (_, count)| sum.saturating_add(count));
-        let header =
-            Header { nodes: self.nodes.len() as u32, references: 0, primitives, depth: self.depth, bounds: self.bounds };
+        let header = Header {
+            nodes: self.nodes.len() as u32,
+            references: 0,
+            primitives,
+            depth: self.depth,
+            bounds: self.bounds,
+        };
         let nodes = self.nodes.iter().scan(0_u32, |place, node| {
             Some(match node.kind() {
                 Kind::Leaf { count, .. } => {

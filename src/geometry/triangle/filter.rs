@@ -2,10 +2,7 @@
 
 use super::Crossing;
 use crate::{
-    geometry::{
-        Axis, Lattice, PreparedRay, beyond,
-        ray::LIFT,
-    },
+    geometry::{Axis, Lattice, PreparedRay, beyond, ray::LIFT},
     math::greatest,
 };
 
