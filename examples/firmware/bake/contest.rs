@@ -32,10 +32,7 @@ fn plans() -> Vec<(&'static str, Plan)> {
 
 /// What `bench` compares over triangles that stand where the leaves want them.
 fn soups() -> [(&'static str, Plan); 2] {
-    [
-        ("kdtree-soup fast", Plan::KdTree(kdtree::Options::fast())),
-        ("grid-soup fast", Plan::Grid(grid::Options::fast())),
-    ]
+    [("kdtree-soup fast", Plan::KdTree(kdtree::Options::fast())), ("grid-soup fast", Plan::Grid(grid::Options::fast()))]
 }
 
 /// The line of a contestant, whose asset goes to a file.
@@ -87,7 +84,8 @@ pub fn contest(out: &Path, small: bool) -> Result<String, Box<dyn Error>> {
         for (name, plan) in soups() {
             let kind = plan.kind().ok_or("every plan has a kind")?;
             let words = bake::build(&mesh, &plan)?;
-            let (words, order) = bake::gathered(&Structure::open(kind, &words)?).ok_or("trees and grids have an order")?;
+            let (words, order) =
+                bake::gathered(&Structure::open(kind, &words)?).ok_or("trees and grids have an order")?;
             let asset = Baker::new().soup(&mesh, &order).structure(Structure::open(kind, &words)?).finish();
             code += &contestant(out, (size, name), (triangles.len(), words.len() * 4), asset, answer)?;
         }
