@@ -3,7 +3,7 @@
 use std::{error::Error, fs, path::Path};
 
 use hitscan::{
-    Mesh, Scene,
+    KdTree, Mesh, Scene,
     accel::{List, Plan, Structure},
     bake::{self, Baker},
     bvh, dualsplit, grid, kdtree, octree,
@@ -28,11 +28,6 @@ fn plans() -> Vec<(&'static str, Plan)> {
         ("dual-split balanced", Plan::DualSplit(dualsplit::Options::balanced())),
         ("dual-split fast", Plan::DualSplit(dualsplit::Options::fast())),
     ]
-}
-
-/// What `bench` compares over triangles that stand where the leaves want them.
-fn soups() -> [(&'static str, Plan); 2] {
-    [("kdtree-soup fast", Plan::KdTree(kdtree::Options::fast())), ("grid-soup fast", Plan::Grid(grid::Options::fast()))]
 }
 
 /// The line of a contestant, whose asset goes to a file.
@@ -76,19 +71,15 @@ pub fn contest(out: &Path, small: bool) -> Result<String, Box<dyn Error>> {
             code += &contestant(out, (size, name), (corners.len(), words.len() * 4), asset, answer)?;
         }
     }
-    code += "];\n\n/// What it compares besides, where there is room.\npub static SOUPS: &[Contestant] = &[\n";
+    code += "];\n\n/// Triangles that stand where the leaves of a kD-tree want them, where there is room.\npub static SOUPS: &[Contestant] = &[\n";
     for (size, (along, around)) in knots.into_iter().take(if small { 0 } else { 2 }) {
         let (vertices, triangles) = knot::mesh(along, around);
         let mesh = Mesh::new(&vertices, triangles.as_slice())?;
         let answer = camera_answer(&Scene::new(List::new(&mesh)?, &mesh)?);
-        for (name, plan) in soups() {
-            let kind = plan.kind().ok_or("every plan has a kind")?;
-            let words = bake::build(&mesh, &plan)?;
-            let (words, order) =
-                bake::gathered(&Structure::open(kind, &words)?).ok_or("trees and grids have an order")?;
-            let asset = Baker::new().soup(&mesh, &order).structure(Structure::open(kind, &words)?).finish();
-            code += &contestant(out, (size, name), (triangles.len(), words.len() * 4), asset, answer)?;
-        }
+        let words = bake::build(&mesh, &Plan::KdTree(kdtree::Options::fast()))?;
+        let (words, order) = bake::gathered(&Structure::KdTree(KdTree::open(&words)?)).ok_or("a tree has an order")?;
+        let asset = Baker::new().soup(&mesh, &order).structure(KdTree::open(&words)?).finish();
+        code += &contestant(out, (size, "kdtree-soup fast"), (triangles.len(), words.len() * 4), asset, answer)?;
     }
     Ok(code + "];\n")
 }

@@ -11,9 +11,7 @@ use firmware::{
     baked::{CONTEST, Contestant, SOUPS},
     camera, entry, finish, for_structure, stack_of,
 };
-use hitscan::{
-    Grid, KdTree, Mesh, Primitives, Ray, Scene, accel::Accelerator, asset::Stored, glam::Vec3, primitives::Soup,
-};
+use hitscan::{KdTree, Mesh, Primitives, Ray, Scene, accel::Accelerator, asset::Stored, glam::Vec3, primitives::Soup};
 use semihosting::println;
 
 /// Prints the line of a contestant; whether its hits are the host's.
@@ -63,10 +61,7 @@ fn main() -> ! {
         same &= for_structure!(contestant, measure_mesh)(&counter, contestant);
     }
     for contestant in black_box(SOUPS) {
-        same &= match contestant.name.split(' ').next() {
-            Some("kdtree-soup") => measure::<KdTree, Soup>(&counter, contestant),
-            _ => measure::<Grid, Soup>(&counter, contestant),
-        };
+        same &= measure::<KdTree, Soup>(&counter, contestant);
     }
     finish(same)
 }
