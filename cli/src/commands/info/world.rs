@@ -1,10 +1,6 @@
 use std::path::Path;
 
-use hitscan::{
-    Instance, Mesh, Primitives,
-    accel::Structure,
-    asset::{Asset, Stored},
-};
+use hitscan::{Instance, Mesh, Primitives, accel::Structure, asset::Asset};
 
 use super::{super::line, describe_sections};
 use crate::{
