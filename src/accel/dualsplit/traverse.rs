@@ -13,7 +13,7 @@ use crate::{
 /// The walk through a [`DualSplit`]: front to back, a stack of segments that wait.
 #[derive(Clone, Debug)]
 #[repr(C)]
-pub struct DualSplitTraversal<'a> {
+pub struct DualSplitTraversal<'a, const HEIGHT: usize = MAX_DEPTH> {
     /// First, where its address is the walk's own: nothing is added for each node.
     slopes: Slopes,
     nodes: &'a [u32],
@@ -21,13 +21,13 @@ pub struct DualSplitTraversal<'a> {
     /// The cell to go on with: the whole at first, after a pause the one before which it was; none behind a leaf.
     next: Option<Segment>,
     /// Far children, the nearest on top.
-    waiting: Waiting<MAX_DEPTH>,
+    waiting: Waiting<HEIGHT>,
 }
 
-impl<'a> DualSplitTraversal<'a> {
+impl<'a, const HEIGHT: usize> DualSplitTraversal<'a, HEIGHT> {
     /// From an entry: its planes are those of the float arithmetic, whose interval the slopes' contains.
     #[inline]
-    pub(super) fn within(tree: &DualSplit<'a>, entry: &Entry, ray: &PreparedRay) -> Self {
+    pub(super) fn within(tree: &DualSplit<'a, HEIGHT>, entry: &Entry, ray: &PreparedRay) -> Self {
         let mut walk = Self::new(tree, ray);
         if walk.next.is_some() {
             walk.next = Segment::of_entry(entry, ray);
@@ -36,7 +36,7 @@ impl<'a> DualSplitTraversal<'a> {
     }
 
     #[inline]
-    pub(super) fn new(tree: &DualSplit<'a>, ray: &PreparedRay) -> Self {
+    pub(super) fn new(tree: &DualSplit<'a, HEIGHT>, ray: &PreparedRay) -> Self {
         let (slopes, next) = Slopes::new(ray, &tree.lattice, 0.0);
         Self { nodes: tree.nodes, references: tree.references, slopes, next, waiting: Waiting::new() }
     }
@@ -109,7 +109,7 @@ impl<'a> DualSplitTraversal<'a> {
     }
 }
 
-impl<'a> Traversal for DualSplitTraversal<'a> {
+impl<'a, const HEIGHT: usize> Traversal for DualSplitTraversal<'a, HEIGHT> {
     type Leaf = Leaf<'a>;
 
     fn next_leaf(&mut self, ray: &PreparedRay, t_max: f32) -> Option<Leaf<'a>> {
