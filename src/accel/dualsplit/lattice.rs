@@ -56,7 +56,7 @@ impl<'a, const HEIGHT: usize> LatticeWalk for DualSplitWalk<'a, HEIGHT> {
                 cell.node = child;
                 for (head, plane) in [(head, planes & 0xffff), (head.turned(), planes >> 16)] {
                     let view = ray.views.get(head.axis_or_leaf() as usize)?;
-                    if head.is_upper() == head.is_descended(ray.descending) {
+                    if head.is_entered(ray.descending) {
                         cell.enter = view.entry(plane).max(cell.enter);
                     } else {
                         cell.exit = view.exit(plane).min(cell.exit);

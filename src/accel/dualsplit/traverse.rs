@@ -4,7 +4,7 @@ use crate::{
         Entry, Leaf, Step, Traversal,
         leaf::References,
         segment::{Segment, Waiting},
-        slope::Slopes,
+        slope::{Slope, Slopes},
     },
     geometry::{PreparedRay, beyond},
     math::{greatest, least},
@@ -47,6 +47,28 @@ impl<'a, const HEIGHT: usize> DualSplitTraversal<'a, HEIGHT> {
         self.waiting.pop(end).map(|segment| segment.up_to(end))
     }
 
+    /// What comes first of a cell in two parts: where the near child ends and which one it is, where the far one begins and
+    /// which one that is, which waits if there is something in it for the ray.
+    #[inline(always)]
+    fn part(
+        &mut self,
+        cell: Segment,
+        slope: Slope,
+        (end, near): (u32, u32),
+        (begin, far): (u32, u32),
+    ) -> Segment {
+        let exit = slope.exit(end);
+        if exit < cell.enter {
+            // The far child: as nearly all rays that miss the near one meet it, its plane need not be looked at.
+            return Segment { node: far, ..cell };
+        }
+        let entry = slope.entry(begin);
+        if !(entry > cell.exit) {
+            self.waiting.push(Segment { node: far, enter: greatest(entry, cell.enter), exit: cell.exit });
+        }
+        Segment { node: near, enter: cell.enter, exit: least(exit, cell.exit) }
+    }
+
     #[inline(always)]
     fn advance<const BOUNDED: bool>(&mut self, ray: &PreparedRay, t_max: f32, budget: &mut u32) -> Step<Leaf<'a>> {
         let (nodes, end) = (self.nodes, beyond(t_max));
@@ -62,7 +84,7 @@ impl<'a, const HEIGHT: usize> DualSplitTraversal<'a, HEIGHT> {
             }
             let Some(&word) = nodes.get(cell.node as usize) else { return Step::Done };
             let head = Head::from_word(word);
-            let Some(slope) = self.slopes.along(head.axis_or_leaf()) else {
+            let Some(&slope) = self.slopes.along(head.axis_or_leaf()) else {
                 return Step::Leaf(Leaf::of(self.references, head.first(), head.count()));
             };
             let Some(&planes) = nodes.get(cell.node as usize + 1) else { return Step::Done };
@@ -72,7 +94,7 @@ impl<'a, const HEIGHT: usize> DualSplitTraversal<'a, HEIGHT> {
                 cell.node = child;
                 for (head, plane) in [(head, planes & 0xffff), (head.turned(), planes >> 16)] {
                     let Some(slope) = self.slopes.along(head.axis_or_leaf()) else { return Step::Done };
-                    if head.is_upper() == head.is_descended(ray.descending) {
+                    if head.is_entered(ray.descending) {
                         cell.enter = greatest(slope.entry(plane), cell.enter);
                     } else {
                         cell.exit = least(slope.exit(plane), cell.exit);
@@ -89,22 +111,14 @@ impl<'a, const HEIGHT: usize> DualSplitTraversal<'a, HEIGHT> {
                 }
                 continue;
             }
-            // The near child ends at the plane in the lower half, the far one begins at the upper.
-            let descended = head.is_descended(ray.descending);
-            let planes = if descended { planes.rotate_left(16) } else { planes };
-            let near = || if descended { head.right() } else { child };
-            let far = || if descended { child } else { head.right() };
-            let exit = slope.exit(planes & 0xffff);
-            if exit < cell.enter {
-                // The far child: as nearly all rays that miss the near one meet it, its plane need not be looked at.
-                cell.node = far();
-                continue;
-            }
-            let entry = slope.entry(planes >> 16);
-            if !(entry > cell.exit) {
-                self.waiting.push(Segment { node: far(), enter: greatest(entry, cell.enter), exit: cell.exit });
-            }
-            cell = Segment { node: near(), enter: cell.enter, exit: least(exit, cell.exit) };
+            // The left child ends at the plane in the lower half, the right one begins at the upper. A way for each direction,
+            // so that nothing has to be exchanged.
+            let (left, right) = (planes & 0xffff, planes >> 16);
+            cell = if head.is_descended(ray.descending) {
+                self.part(cell, slope, (right, head.right()), (left, child))
+            } else {
+                self.part(cell, slope, (left, child), (right, head.right()))
+            };
         }
     }
 }
