@@ -50,13 +50,7 @@ impl<'a, const HEIGHT: usize> DualSplitTraversal<'a, HEIGHT> {
     /// What comes first of a cell in two parts: where the near child ends and which one it is, where the far one begins and
     /// which one that is, which waits if there is something in it for the ray.
     #[inline(always)]
-    fn part(
-        &mut self,
-        cell: Segment,
-        slope: Slope,
-        (end, near): (u32, u32),
-        (begin, far): (u32, u32),
-    ) -> Segment {
+    fn part(&mut self, cell: Segment, slope: Slope, (end, near): (u32, u32), (begin, far): (u32, u32)) -> Segment {
         let exit = slope.exit(end);
         if exit < cell.enter {
             // The far child: as nearly all rays that miss the near one meet it, its plane need not be looked at.
