@@ -3,7 +3,7 @@
 
 use fearless_simd::{Simd, SimdBase, SimdMask, f32x8, mask32x8};
 
-use super::filter::{LARGE_AREA, SMALL, SMALL_AREA, TOLERANCE, U, UNDERFLOW};
+use super::filter::{LARGE_AREA, SHEARED, SMALL, SMALL_AREA, TOLERANCE, U, UNDERFLOW};
 use crate::geometry::{PreparedRay, beyond, ray::LIFT};
 
 /// A ray as the test of eight triangles wants it.
@@ -13,7 +13,6 @@ pub(crate) struct ShearLanes<S: Simd> {
     pub(crate) axes: [usize; 3],
     origin: [f32x8<S>; 3],
     slope: [f32x8<S>; 2],
-    error: f32x8<S>,
     inverse: f32,
 }
 
@@ -54,12 +53,17 @@ impl<S: Simd> ShearLanes<S> {
     #[inline(always)]
     pub(crate) fn new(simd: S, ray: &PreparedRay) -> Self {
         let shear = &ray.shear;
-        let (major, [x, y, z], [sx, sy]) = (shear.major, shear.origin, shear.slope);
+        let (major, views) = (shear.major, &ray.views);
+        let [x, y, z] = [major.next() as usize, major.next().next() as usize, major as usize];
+        // Written out, as all that is for kernels.
         Self {
-            axes: [major.next() as usize, major.next().next() as usize, major as usize],
-            origin: [f32x8::splat(simd, x), f32x8::splat(simd, y), f32x8::splat(simd, z)],
-            slope: [f32x8::splat(simd, sx), f32x8::splat(simd, sy)],
-            error: f32x8::splat(simd, shear.error),
+            axes: [x, y, z],
+            origin: [
+                f32x8::splat(simd, views[x].origin),
+                f32x8::splat(simd, views[y].origin),
+                f32x8::splat(simd, views[z].origin),
+            ],
+            slope: [f32x8::splat(simd, shear.slope[x]), f32x8::splat(simd, shear.slope[y])],
             inverse: shear.inverse,
         }
     }
@@ -77,7 +81,7 @@ impl<S: Simd> ShearLanes<S> {
     #[inline(always)]
     pub(crate) fn test(&self, [[ax, ay, az], [bx, by, bz], [cx, cy, cz]]: [[f32x8<S>; 3]; 3]) -> Possible<S> {
         let (u, v, w) = (cx * by - cy * bx, ax * cy - ay * cx, bx * ay - by * ax);
-        let lifted = self.error * ((az.abs() + bz.abs()) + cz.abs());
+        let lifted = ((az.abs() + bz.abs()) + cz.abs()) * SHEARED;
         let spread = ((ax.abs() + ay.abs()) + (bx.abs() + by.abs())) + (cx.abs() + cy.abs());
         let bound = (lifted + spread * (2.0 * U / LIFT)) * (spread * LIFT) + UNDERFLOW;
         // A NaN makes the bound one, too.
