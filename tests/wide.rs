@@ -134,7 +134,7 @@ fn triangles_that_cannot_be_told_apart_are_divided() {
 fn neighbours_share_corners() {
     let (vertices, triangles) = hills(100);
     let wide = build(Mesh::new(&vertices, &triangles[..]).unwrap());
-    assert!(wide.bytes() < triangles.len() * 40, "{}", wide.bytes());
+    assert!(wide.bytes() < triangles.len() * 36, "{}", wide.bytes());
 }
 
 #[test]

@@ -4,7 +4,7 @@
 //! It returns what the others return, bit for bit: boxes are met by the rules R1, R2 and R4 of ARCHITECTURE.md, in `f32`
 //! without fused products; triangles are tested by the first tier of the certified test in eight lanes, and what that leaves
 //! open by the others. Nodes are 256 bytes, the boxes by coordinate (Ernst and Greiner, *Multi bounding volume hierarchies*,
-//! 2008; Wald, Benthin and Boulos, *Getting rid of packets*, 2008); blocks keep the corners that their triangles share once ([`block`]).
+//! 2008; Wald, Benthin and Boulos, *Getting rid of packets*, 2008); blocks keep the corners that their triangles share once.
 //!
 //! Which instructions are used is found out when a structure is built; all give the same bits.
 

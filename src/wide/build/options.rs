@@ -39,7 +39,7 @@ impl Options {
             reinsertions: 0,
             reinserted: 0.0,
             references: 1.0,
-            byte_price: 0.0,
+            byte_price: 0.2,
         }
     }
 
