@@ -129,7 +129,7 @@ fn assets() {
         read::<Renumbering<'_>>(&asset);
         read::<&[Instance]>(&asset);
         black_box(asset.scene::<Structure<'_>, Mesh<'_>>().is_ok());
-        black_box(asset.lattice_scene::<DualSplit<'_>, LatticeMesh<'_>>().is_ok());
+        black_box(asset.lattice_scene::<DualSplit<'_, 16>, LatticeMesh<'_>>().is_ok());
     }
 }
 

@@ -54,7 +54,7 @@ impl<'a> KdTree<'a> {
             return Err(error(4, Reason::Bounds));
         }
         if tree.depth as usize > MAX_DEPTH {
-            return Err(error(3, Reason::Depth));
+            return Err(Self::too_deep());
         }
         tree.check_nodes()?;
         for index in 0..tree.reference_count {
@@ -63,6 +63,11 @@ impl<'a> KdTree<'a> {
             }
         }
         Ok(tree)
+    }
+
+    /// The header names more levels than a stack has.
+    pub(super) const fn too_deep() -> Malformed {
+        Malformed { structure: asset::Kind::KdTree, word: 3, reason: Reason::Depth }
     }
 
     /// One pass in order: right children are the nodes after the left subtrees, so each node has exactly one parent.
