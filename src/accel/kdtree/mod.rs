@@ -11,6 +11,7 @@ mod form;
 mod node;
 mod open;
 mod options;
+mod order;
 mod pack;
 mod split;
 mod stage;
