@@ -10,7 +10,7 @@ mod bundle;
 mod lattice;
 mod obb;
 mod on_lattice;
-mod ray;
+pub(crate) mod ray;
 mod sphere;
 mod transform;
 mod triangle;

@@ -21,10 +21,10 @@ const fn magnitude(x: f32) -> u32 {
 }
 
 /// 2^-21, the relative error of a slope times a depth: five roundings, and what their products add; over [`LIFT`].
-const SHEARED: f32 = 1.0 / 2_097_152.0 / LIFT;
+pub(crate) const SHEARED: f32 = 1.0 / 2_097_152.0 / LIFT;
 
 /// 2^-46 over [`LIFT`]: what underflow can take from a slope, and no denormal.
-const FLAT: f32 = 1.0 / 70_368_744_177_664.0 / LIFT;
+pub(crate) const FLAT: f32 = 1.0 / 70_368_744_177_664.0 / LIFT;
 
 /// 2^64, by which bounds on errors are lifted, so that they overflow before what they bound does.
 pub(crate) const LIFT: f32 = 18_446_744_073_709_551_616.0;
@@ -115,8 +115,12 @@ impl defmt::Format for Ray {
     }
 }
 
-/// The bits of 2^-100 … 2^100, the largest component of a direction.
-const LARGEST: core::ops::RangeInclusive<u32> = magnitude(7.888_609e-31)..=magnitude(1.267_650_6e30);
+/// 2^-100 and 2^100, between which the largest component of a direction lies.
+pub(crate) const SHORT: f32 = 7.888_609e-31;
+pub(crate) const LONG: f32 = 1.267_650_6e30;
+
+/// Their bits.
+const LARGEST: core::ops::RangeInclusive<u32> = magnitude(SHORT)..=magnitude(LONG);
 
 /// A ray as one axis sees it: the parameter of the plane at `p` is `(p - origin) * entry`.
 #[derive(Clone, Copy, Debug)]

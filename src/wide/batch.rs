@@ -9,6 +9,7 @@ use fearless_simd::{Bytes, Simd, SimdBase, f32x8, u32x8};
 
 use super::{
     node::{CHILDREN, Child, ORDERS, WIDTH},
+    packet,
     permute::permute,
     slabs::{Sides, Slabs, row},
     tree::Tree,
@@ -59,7 +60,7 @@ impl Places {
 }
 
 /// What a query wants of a ray's hits, and where it puts them.
-trait Answers {
+pub(super) trait Answers {
     /// Whether one hit is as good as any other.
     const ANY: bool;
 
@@ -164,7 +165,7 @@ impl Runner {
     #[inline(always)]
     fn test<S: Simd, A: Answers>(&mut self, simd: S, tree: &Tree, waiting: &Waiting<'_>) -> bool {
         let Some(block) = tree.block(self.child) else { return false };
-        let query = Query { simd, tree, ray: &self.ray, shear: ShearLanes::new(simd, &self.ray) };
+        let query = Query { simd, tree, asker: &self.ray, shear: ShearLanes::new(simd, &self.ray) };
         query.improve(block, self.child.count(), &mut self.best);
         self.behind = beyond(self.best.t);
         !(A::ANY && self.best.primitive != u32::MAX) && self.next(waiting, self.waiting)
@@ -291,7 +292,9 @@ fn one_by_one(tree: &Tree, rays: &[Ray]) -> bool {
 #[inline(always)]
 pub(super) fn closest<S: Simd>(simd: S, tree: &Tree, rays: &[Ray], hits: &mut [Option<Hit>]) {
     let rays = rays.get(..hits.len()).unwrap_or(rays);
-    if one_by_one(tree, rays) {
+    if simd.level().as_avx512().is_some() && is_coherent(rays) {
+        packet::run(simd, tree, rays, hits);
+    } else if one_by_one(tree, rays) {
         for (ray, hit) in rays.iter().zip(hits) {
             *hit = walk::closest(simd, tree, ray);
         }
@@ -304,7 +307,9 @@ pub(super) fn closest<S: Simd>(simd: S, tree: &Tree, rays: &[Ray], hits: &mut [O
 #[inline(always)]
 pub(super) fn any<S: Simd>(simd: S, tree: &Tree, rays: &[Ray], hits: &mut [bool]) {
     let rays = rays.get(..hits.len()).unwrap_or(rays);
-    if one_by_one(tree, rays) {
+    if simd.level().as_avx512().is_some() && is_coherent(rays) {
+        packet::run(simd, tree, rays, hits);
+    } else if one_by_one(tree, rays) {
         for (ray, hit) in rays.iter().zip(hits) {
             *hit = walk::any(simd, tree, ray);
         }

@@ -14,6 +14,7 @@ mod binary;
 mod build;
 mod collapse;
 mod node;
+mod packet;
 mod permute;
 mod simd;
 mod slabs;

@@ -1,38 +1,53 @@
-//! The first tier for eight triangles at a time: [`filter`](super::filter) operation by operation, so that where it answers it
-//! returns the same bits.
+//! The first tier for a ray and many triangles at a time, or for a triangle and many rays: [`filter`](super::filter) operation
+//! by operation, so that where it answers it returns the same bits.
 
-use fearless_simd::{Simd, SimdBase, SimdMask, f32x8, mask32x8};
+use core::marker::PhantomData;
+
+use fearless_simd::{Simd, SimdBase, SimdFloat, SimdMask, f32x8};
 
 use super::filter::{LARGE_AREA, SMALL, SMALL_AREA, TOLERANCE, U, UNDERFLOW};
-use crate::geometry::{PreparedRay, beyond, ray::LIFT};
+use crate::geometry::{
+    PreparedRay,
+    ray::{LIFT, Shear, TINY, WIDENING},
+};
 
-/// A ray as the test of eight triangles wants it.
+/// The numbers of many lanes.
+pub(crate) trait Floats<S: Simd>: SimdFloat<S, Element = f32> {}
+
+impl<S: Simd, F: SimdFloat<S, Element = f32>> Floats<S> for F {}
+
+/// Rays with one major axis, which they go along the same way, as the test of triangles wants them: one in all lanes, or another
+/// in each.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct ShearLanes<S: Simd> {
+pub(crate) struct ShearLanes<S: Simd, F: Floats<S> = f32x8<S>> {
     /// The axes in the order of the shear.
     pub(crate) axes: [usize; 3],
-    origin: [f32x8<S>; 3],
-    slope: [f32x8<S>; 2],
-    error: f32x8<S>,
-    inverse: f32,
+    /// The origins in this order.
+    origin: [F; 3],
+    slope: [F; 2],
+    error: F,
+    inverse: F,
+    /// Whether the rays go the other way along the major axis.
+    backward: bool,
+    simd: PhantomData<S>,
 }
 
-/// Eight triangles of which some may be hit.
-pub(crate) struct Possible<S: Simd> {
-    edges: [f32x8<S>; 3],
-    depths: [f32x8<S>; 3],
-    spread: f32x8<S>,
-    bound: f32x8<S>,
-    least: f32x8<S>,
-    greatest: f32x8<S>,
+/// Pairs of rays and triangles of which some may be hits.
+pub(crate) struct Possible<F> {
+    edges: [F; 3],
+    depths: [F; 3],
+    spread: F,
+    bound: F,
+    least: F,
+    greatest: F,
     /// A bit for each that is not proven to be missed.
     pub(crate) lanes: u32,
 }
 
-/// What is known of eight triangles that are possibly hit.
-pub(crate) struct Crossings<S: Simd> {
-    /// The ray's parameters.
-    pub(crate) t: f32x8<S>,
+/// What is known of pairs that are possibly hits.
+pub(crate) struct Crossings<F> {
+    /// The rays' parameters.
+    pub(crate) t: F,
     /// A bit for each that is hit, with a proven parameter within the limits.
     pub(crate) proven: u32,
     /// A bit for each that may be hit, but within the limits only as far as is known.
@@ -44,35 +59,49 @@ pub(crate) struct Crossings<S: Simd> {
     backward: bool,
 }
 
-/// The greatest parameter that is not [`beyond`] any less than `t`.
+/// [`beyond`] in lanes.
 #[inline(always)]
-fn before(t: f32) -> f32 {
-    -beyond(-t)
+fn beyond_all<S: Simd, F: Floats<S>>(t: F) -> F {
+    t + t.abs() * (4.0 * WIDENING) + 4.0 * TINY
 }
 
 impl<S: Simd> ShearLanes<S> {
     #[inline(always)]
     pub(crate) fn new(simd: S, ray: &PreparedRay) -> Self {
-        let shear = &ray.shear;
+        let Shear { major, origin, slope, inverse, error } = ray.shear;
         let splat = |x: f32| f32x8::splat(simd, x);
-        let major = shear.major;
-        Self {
-            axes: [major.next() as usize, major.next().next() as usize, major as usize],
-            origin: shear.origin.map(splat),
-            slope: shear.slope.map(splat),
-            error: splat(shear.error),
-            inverse: shear.inverse,
-        }
+        let axes = [major.next() as usize, major.next().next() as usize, major as usize];
+        Self::of(axes, origin.map(splat), slope.map(splat), (splat(inverse), inverse <= 0.0), splat(error))
+    }
+}
+
+impl<S: Simd, F: Floats<S>> ShearLanes<S, F> {
+    /// As [`Shear`] has it of each ray: axes and origin in the order of the shear, and whether all go backward.
+    #[inline(always)]
+    pub(crate) const fn of(
+        axes: [usize; 3],
+        origin: [F; 3],
+        slope: [F; 2],
+        (inverse, backward): (F, bool),
+        error: F,
+    ) -> Self {
+        Self { axes, origin, slope, error, inverse, backward, simd: PhantomData }
     }
 
-    /// Which of the triangles may be hit; the corners' coordinates stand in the order of `axes`.
+    /// The corners relative to the origins; their coordinates stand in the order of `axes`.
     #[inline(always)]
-    pub(crate) fn test(&self, [a, b, c]: [[f32x8<S>; 3]; 3]) -> Possible<S> {
-        let [ox, oy, oz] = self.origin;
+    pub(crate) fn relative(&self, [a, b, c]: [[F; 3]; 3]) -> [[F; 3]; 3] {
+        let [x, y, z] = self.origin;
+        [[a[0] - x, a[1] - y, a[2] - z], [b[0] - x, b[1] - y, b[2] - z], [c[0] - x, c[1] - y, c[2] - z]]
+    }
+
+    /// Which pairs may be hits; the corners are relative to the rays' origins.
+    #[inline(always)]
+    pub(crate) fn test(&self, [a, b, c]: [[F; 3]; 3]) -> Possible<F> {
         let [sx, sy] = self.slope;
-        let (az, bz, cz) = (a[2] - oz, b[2] - oz, c[2] - oz);
-        let (ax, bx, cx) = ((a[0] - ox) - sx * az, (b[0] - ox) - sx * bz, (c[0] - ox) - sx * cz);
-        let (ay, by, cy) = ((a[1] - oy) - sy * az, (b[1] - oy) - sy * bz, (c[1] - oy) - sy * cz);
+        let (az, bz, cz) = (a[2], b[2], c[2]);
+        let (ax, bx, cx) = (a[0] - sx * az, b[0] - sx * bz, c[0] - sx * cz);
+        let (ay, by, cy) = (a[1] - sy * az, b[1] - sy * bz, c[1] - sy * cz);
         let (u, v, w) = (cx * by - cy * bx, ax * cy - ay * cx, bx * ay - by * ax);
         let lifted = self.error * ((az.abs() + bz.abs()) + cz.abs());
         let spread = ((ax.abs() + ay.abs()) + (bx.abs() + by.abs())) + (cx.abs() + cy.abs());
@@ -80,19 +109,13 @@ impl<S: Simd> ShearLanes<S> {
         // A NaN makes the bound one, too.
         let (least, greatest) = (u.min(v).min(w), u.max(v).max(w));
         let missed = greatest.simd_gt(bound) & least.simd_lt(-bound);
-        let lanes = !missed.to_bitmask() as u32 & 0xff;
+        let lanes = !missed.to_bitmask() as u32 & ((1 << F::LEN) - 1);
         Possible { edges: [u, v, w], depths: [az, bz, cz], spread, bound, least, greatest, lanes }
     }
 
     /// Where the triangles are hit between the limits; `lanes` are those that may be hit.
     #[inline(always)]
-    pub(crate) fn place(
-        &self,
-        simd: S,
-        possible: &Possible<S>,
-        lanes: u32,
-        (t_min, t_max): (f32, f32),
-    ) -> Crossings<S> {
+    pub(crate) fn place(&self, simd: S, possible: &Possible<F>, lanes: u32, (t_min, t_max): (F, F)) -> Crossings<F> {
         let &Possible { edges: [u, v, w], depths: [az, bz, cz], spread, bound, least, greatest, .. } = possible;
         let determinant = (u + v) + w;
         let (e1, e2) = (bz - az, cz - az);
@@ -105,7 +128,7 @@ impl<S: Simd> ShearLanes<S> {
         let error = extent * spread * (depth + spread) + (depth + extent) * area;
         let (magnitude, size) = (q.abs(), t.abs());
         let limit = magnitude * TOLERANCE * area;
-        let hit: mask32x8<S> = least.simd_gt(bound) | greatest.simd_lt(-bound);
+        let hit: F::Mask = least.simd_gt(bound) | greatest.simd_lt(-bound);
         let narrow = (edge * 16.0).simd_lt(area) & area.simd_lt(1.0e30);
         let near = (error * (8.0 * U)).simd_lt(limit) & limit.simd_gt(SMALL);
         let normal = magnitude.simd_gt(SMALL) & size.simd_gt(1.0e-30) & size.simd_lt(1.0e37);
@@ -117,20 +140,20 @@ impl<S: Simd> ShearLanes<S> {
             decided = (hit & area.simd_ge(SMALL_AREA) & area.simd_le(LARGE_AREA)).to_bitmask() as u32;
             let error = ((error * (8.0 * U) + 1.0e-36) / area + magnitude * (8.0 * U) + 1.0e-36) * self.inverse.abs();
             let error = error + 1.0e-36;
-            let outside = (t + error).simd_lt(t_min) | (t - error).simd_gt(beyond(t_max));
-            // A crossing lies between the corners' parameters along the major axis.
+            let outside = (t + error).simd_lt(t_min) | (t - error).simd_gt(beyond_all(t_max));
+            // A crossing lies between the corners' parameters along the major axis, with as much before it as behind.
             let [a, b, c] = possible.depths.map(|depth| depth * self.inverse);
             let (first, last) = (a.min(b).min(c), a.max(b).max(c));
-            let beside = first.simd_gt(beyond(t_max)) | last.simd_lt(before(t_min));
+            let beside = first.simd_gt(beyond_all(t_max)) | last.simd_lt(-beyond_all(-t_min));
             open &= !((hit & narrow & outside) | beside).to_bitmask() as u32;
         }
-        let positive = determinant.simd_gt(f32x8::splat(simd, 0.0)).to_bitmask() as u32;
+        let positive = determinant.simd_gt(F::splat(simd, 0.0)).to_bitmask() as u32;
         let proven = (placed & within).to_bitmask() as u32 & lanes;
-        Crossings { t, proven, open, decided, positive, backward: self.inverse <= 0.0 }
+        Crossings { t, proven, open, decided, positive, backward: self.backward }
     }
 }
 
-impl<S: Simd> Crossings<S> {
+impl<F> Crossings<F> {
     /// A bit for each that is hit from its front.
     #[inline(always)]
     pub(crate) fn front(&self) -> u32 {
