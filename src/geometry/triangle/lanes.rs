@@ -32,6 +32,53 @@ pub(crate) struct ShearLanes<S: Simd, F: Floats<S> = f32x8<S>> {
     simd: PhantomData<S>,
 }
 
+/// What bounds rays with one major axis: the test of eight triangles, all of which pass them by.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Wedge<S: Simd> {
+    /// The axes in the order of the shear.
+    pub(crate) axes: [usize; 3],
+    /// The least and the greatest origins, in this order.
+    pub(crate) origin: [[f32x8<S>; 2]; 3],
+    /// The least and the greatest slopes.
+    pub(crate) slope: [[f32x8<S>; 2]; 2],
+    /// The greatest error.
+    pub(crate) error: f32x8<S>,
+}
+
+impl<S: Simd> Wedge<S> {
+    /// The least and the greatest sheared coordinates of three corners, given the intervals of what they are computed of; as
+    /// roundings keep order, each ray's are between them.
+    #[inline(always)]
+    fn span(&self, simd: S, axis: usize, x: [f32x8<S>; 3], depths: [[f32x8<S>; 2]; 3]) -> (f32x8<S>, f32x8<S>) {
+        let ([first, last], [flat, steep]) = (self.origin[axis], self.slope[axis]);
+        let mut low = f32x8::splat(simd, f32::INFINITY);
+        let mut high = -low;
+        for (x, [near, far]) in x.into_iter().zip(depths) {
+            let (p, q, r, s) = (flat * near, flat * far, steep * near, steep * far);
+            low = low.min((x - last) - p.max(q).max(r.max(s)));
+            high = high.max((x - first) - p.min(q).min(r.min(s)));
+        }
+        (low, high)
+    }
+
+    /// Which of the triangles some ray may hit; the corners' coordinates stand in the order of `axes`.
+    ///
+    /// The others have all corners on one side of each ray, along the first axis or the second, as far as the filter's
+    /// `is_beside` proves it.
+    #[inline(always)]
+    pub(crate) fn may_hit(&self, simd: S, [a, b, c]: [[f32x8<S>; 3]; 3]) -> u32 {
+        let [first, last] = self.origin[2];
+        let depths = [[a[2] - last, a[2] - first], [b[2] - last, b[2] - first], [c[2] - last, c[2] - first]];
+        let [da, db, dc] = depths;
+        let deep = (da[0].abs().max(da[1].abs()) + db[0].abs().max(db[1].abs())) + dc[0].abs().max(dc[1].abs());
+        let error = (self.error * deep + UNDERFLOW) * LIFT;
+        let (x0, x1) = self.span(simd, 0, [a[0], b[0], c[0]], depths);
+        let (y0, y1) = self.span(simd, 1, [a[1], b[1], c[1]], depths);
+        let beside = x0.simd_gt(error) | x1.simd_lt(-error) | y0.simd_gt(error) | y1.simd_lt(-error);
+        !beside.to_bitmask() as u32 & 0xff
+    }
+}
+
 /// Pairs of rays and triangles of which some may be hits.
 pub(crate) struct Possible<F> {
     edges: [F; 3],
@@ -53,7 +100,7 @@ pub(crate) struct Crossings<F> {
     /// A bit for each that may be hit, but within the limits only as far as is known.
     pub(crate) open: u32,
     /// A bit for each open one that is hit, and of a size at which no other scale is tried: the slow tiers come next.
-    decided: u32,
+    pub(crate) decided: u32,
     /// A bit for each determinant above zero.
     positive: u32,
     backward: bool,

@@ -2,7 +2,7 @@ use fearless_simd::{Select, Simd, SimdBase, SimdMask, f32x8, f32x16};
 
 use super::rays::{Group, Lanes, ROWS, Rays, Rows, load, of_row};
 use crate::{
-    geometry::{ray::WIDENING, slack},
+    geometry::{Wedge, ray::WIDENING, slack},
     wide::{
         node::Node,
         slabs::{Met, row},
@@ -68,10 +68,28 @@ impl<S: Simd> Frustum<S> {
     #[inline(always)]
     pub(super) fn new(simd: S, rays: &Rays, group: &Group) -> Self {
         let [x, y, z] = [axis(simd, rays, group, 0), axis(simd, rays, group, 1), axis(simd, rays, group, 2)];
-        let of =
-        |i: usize| [f32x8::splat(simd, x.1[i]), f32x8::splat(simd, y.1[i]), f32x8::splat(simd, z.1[i])];
+        let of = |i: usize| [f32x8::splat(simd, x.1[i]), f32x8::splat(simd, y.1[i]), f32x8::splat(simd, z.1[i])];
         let t_min = f32x8::splat(simd, range(simd, &rays.t_min, group.lanes).0);
         Self { near: [x.0, y.0, z.0], ahead: of(0), back: of(1), entry: of(2), slow: of(3), fast: of(4), t_min }
+    }
+
+    /// What bounds the rays before a triangle.
+    #[inline(always)]
+    pub(super) fn wedge(&self, simd: S, rays: &Rays, group: &Group) -> Wedge<S> {
+        let [x, y, z] = group.axes;
+        let origin = [self.origins(group, x % 3), self.origins(group, y % 3), self.origins(group, z % 3)];
+        let slope = [range(simd, &rays.slope[0], group.lanes), range(simd, &rays.slope[1], group.lanes)];
+        let [(x0, x1), (y0, y1)] = slope;
+        let slope =
+            [[f32x8::splat(simd, x0), f32x8::splat(simd, x1)], [f32x8::splat(simd, y0), f32x8::splat(simd, y1)]];
+        Wedge { axes: group.axes, origin, slope, error: f32x8::splat(simd, greatest(simd, &rays.error, group.lanes)) }
+    }
+
+    /// The least and the greatest origin along an axis.
+    #[inline(always)]
+    const fn origins(&self, group: &Group, axis: usize) -> [f32x8<S>; 2] {
+        let (ahead, back) = (self.ahead[axis], self.back[axis]);
+        if group.descends[axis] { [ahead, back] } else { [back, ahead] }
     }
 
     /// When an axis' planes are passed.

@@ -8,7 +8,7 @@
 mod frustum;
 mod rays;
 
-use fearless_simd::{Select, Simd, SimdBase, SimdMask, f32x16, mask32x16, u32x16};
+use fearless_simd::{Select, Simd, SimdBase, SimdMask, f32x8, f32x16, mask32x16, u32x16};
 
 use self::{
     frustum::{Frustum, greatest},
@@ -17,18 +17,18 @@ use self::{
 use super::{
     batch::Answers,
     node::{CHILDREN, Child, Node, TRIANGLE_WORDS, WIDTH},
-    slabs::Slabs,
+    slabs::{Slabs, row},
     stack::ROOM,
     tree::{Block, Tree},
     walk::{self, Asker, Query},
 };
 use crate::{
-    geometry::{PreparedRay, Ray, slack},
+    geometry::{PreparedRay, Ray, Wedge, parameters, slack},
     primitives::{Hit, Sides, Span},
 };
 
 /// So few rays go on one by one from a node.
-const FEW: u32 = 4;
+const FEW: u32 = 16;
 
 /// So few rays of a row are tested one by one with a block of triangles.
 const FEW_OF_ROW: u32 = 5;
@@ -44,7 +44,7 @@ struct Waiting {
 }
 
 /// What is kept from packet to packet.
-struct Packet<'p, S: Simd> {
+pub(super) struct Packet<'p, S: Simd> {
     simd: S,
     tree: &'p Tree,
     given: &'p [Ray],
@@ -64,6 +64,22 @@ impl Asker for Ray {
     }
 }
 
+/// The corners of the `count` triangles in a block, by these axes.
+#[inline(always)]
+fn corners<S: Simd>(simd: S, block: &Block, count: usize, [x, y, z]: [usize; 3]) -> [[f32x8<S>; 3]; 3] {
+    [
+        [line(simd, block, count, x), line(simd, block, count, y), line(simd, block, count, z)],
+        [line(simd, block, count, 3 + x), line(simd, block, count, 3 + y), line(simd, block, count, 3 + z)],
+        [line(simd, block, count, 6 + x), line(simd, block, count, 6 + y), line(simd, block, count, 6 + z)],
+    ]
+}
+
+/// A coordinate of each of the `count` triangles in a block.
+#[inline(always)]
+fn line<S: Simd>(simd: S, block: &Block, count: usize, which: usize) -> f32x8<S> {
+    row(simd, block.get(which * count..).and_then(|words| words.first_chunk()).unwrap_or(&[0; WIDTH]))
+}
+
 /// The lowest lane.
 #[inline(always)]
 const fn lowest(lanes: Lanes) -> usize {
@@ -71,6 +87,9 @@ const fn lowest(lanes: Lanes) -> usize {
 }
 
 impl<S: Simd> Packet<'_, S> {
+    /// Whether vectors are long enough.
+    pub(super) const PAYS: bool = <S::f32s as SimdBase<S>>::LEN >= WIDTH;
+
     /// When a row of rays passes two planes of an axis.
     #[inline(always)]
     fn along(&self, row: usize, axis: usize, near: f32, far: f32) -> (f32x16<S>, f32x16<S>) {
@@ -107,13 +126,26 @@ impl<S: Simd> Packet<'_, S> {
 
     /// Tests rays of a row with the triangles of a block.
     #[inline(always)]
-    fn test_row(&mut self, block: &Block, count: usize, group: &Group, row: usize, lanes: u32) {
+    fn test_row<A: Answers>(
+        &mut self,
+        block: &Block,
+        count: usize,
+        group: &Group,
+        (row, lanes): (usize, u32),
+        mut triangles: u32,
+    ) {
         let (simd, tree) = (self.simd, self.tree);
         let shear = self.rays.shear(simd, group, row);
         let mut t = load(simd, &self.rays.t, row);
         let mut primitive = u32x16::load_array_ref(simd, &self.rays.primitive[row % ROWS].0);
         let t_min = load(simd, &self.rays.t_min, row);
-        for triangle in 0..count {
+        let of = &self.rays.origin;
+        let origin = [load(simd, &of[0], row), load(simd, &of[1], row), load(simd, &of[2], row)];
+        let of = &self.rays.direction;
+        let direction = [load(simd, &of[0], row), load(simd, &of[1], row), load(simd, &of[2], row)];
+        while triangles != 0 {
+            let triangle = triangles.trailing_zeros() as usize % WIDTH;
+            triangles &= triangles - 1;
             let word = |row: usize| block.get(row * count + triangle).copied().unwrap_or(0);
             let coordinate = |row: usize| f32x16::splat(simd, f32::from_bits(word(row)));
             let [x, y, z] = shear.axes;
@@ -128,7 +160,18 @@ impl<S: Simd> Packet<'_, S> {
                 continue;
             }
             let crossings = shear.place(simd, &possible, lanes, (t_min, t));
-            let mut proven = crossings.proven;
+            let (mut found, mut proven, mut open) = (crossings.t, crossings.proven, crossings.open);
+            let decided = open & crossings.decided;
+            if decided & decided.wrapping_sub(1) != 0 {
+                let (exact, certain) = simd.vectorize(
+                    #[inline(always)]
+                    || parameters(simd, &tree.triangle(block, triangle, count), origin, direction),
+                );
+                let certain = certain & decided;
+                found = mask32x16::from_bitmask(simd, certain.into()).select(exact, found);
+                proven |= certain & found.simd_ge(t_min).to_bitmask() as u32;
+                open &= !certain;
+            }
             if tree.sides == Sides::Front {
                 proven &= crossings.front();
             }
@@ -141,12 +184,11 @@ impl<S: Simd> Packet<'_, S> {
             }
             if proven != 0 {
                 let lower = u32x16::splat(simd, number).simd_lt(primitive);
-                let precedes = crossings.t.simd_lt(t) | (crossings.t.simd_eq(t) & lower);
+                let precedes = found.simd_lt(t) | (found.simd_eq(t) & lower);
                 let better = precedes & mask32x16::from_bitmask(simd, proven.into());
-                t = better.select(crossings.t, t);
+                t = better.select(found, t);
                 primitive = better.select(u32x16::splat(simd, number), primitive);
             }
-            let mut open = crossings.open;
             while open != 0 {
                 let lane = open.trailing_zeros() as usize % LANES;
                 open &= open - 1;
@@ -160,7 +202,8 @@ impl<S: Simd> Packet<'_, S> {
                 }
             }
         }
-        self.rays.set_ends(row, t);
+        let behind = if A::ANY { primitive.simd_ne(u32::MAX) } else { mask32x16::splat(simd, false) };
+        self.rays.set_ends(row, t, behind);
         primitive.store_array(&mut self.rays.primitive[row % ROWS].0);
     }
 
@@ -173,13 +216,22 @@ impl<S: Simd> Packet<'_, S> {
 
     /// Tests rays with a block of triangles.
     #[inline(always)]
-    fn test(&mut self, child: Child, group: &Group, lanes: Lanes) {
+    fn test<A: Answers>(&mut self, child: Child, group: &Group, wedge: &Wedge<S>, lanes: Lanes) {
+        let simd = self.simd;
         let Some(block) = self.tree.block(child) else { return };
         let count = child.count();
+        let triangles =
+            (0xff >> (WIDTH - count)) & wedge.may_hit(self.simd, corners(self.simd, block, count, wedge.axes));
+        if triangles == 0 {
+            return;
+        }
         for row in 0..ROWS {
             let of_row = of_row(lanes, row);
             if of_row.count_ones() > FEW_OF_ROW {
-                self.test_row(block, count, group, row, of_row);
+                simd.vectorize(
+                    #[inline(always)]
+                    || self.test_row::<A>(block, count, group, (row, of_row), triangles),
+                );
                 continue;
             }
             let mut left = of_row;
@@ -189,7 +241,7 @@ impl<S: Simd> Packet<'_, S> {
                 let mut best = self.rays.best(lane);
                 let Some(query) = self.query(group, lane) else { break };
                 query.improve(block, count, &mut best);
-                self.rays.set_best(lane, best);
+                self.rays.set_best::<A>(lane, best);
             }
         }
     }
@@ -206,14 +258,14 @@ impl<S: Simd> Packet<'_, S> {
                 [&self.rays.origin, &self.rays.entry, &self.rays.exit].map(|rows| of_lane(&rows[axis], lane))
             });
             let slabs = Slabs::of(self.simd, group.descends, axes, of_lane(&self.rays.t_min, lane));
-            if A::ANY {
-                if walk::any_below(&query, &slabs, child, best) {
-                    self.rays.set_best(lane, Hit { primitive: 0, ..best });
-                }
+            let hit = if !A::ANY {
+                walk::closest_below(&query, &slabs, child, best)
+            } else if walk::any_below(&query, &slabs, child, best) {
+                Hit { primitive: 0, ..best }
             } else {
-                let hit = walk::closest_below(&query, &slabs, child, best);
-                self.rays.set_best(lane, hit);
-            }
+                continue;
+            };
+            self.rays.set_best::<A>(lane, hit);
         }
     }
 
@@ -221,16 +273,28 @@ impl<S: Simd> Packet<'_, S> {
     #[inline(always)]
     fn walk<A: Answers>(&mut self, root: Child, group: &Group) {
         let (simd, tree) = (self.simd, self.tree);
-        let frustum = Frustum::new(simd, &self.rays, group);
+        let (frustum, wedge) = simd.vectorize(
+            #[inline(always)]
+            || {
+                let frustum = Frustum::new(simd, &self.rays, group);
+                (frustum, frustum.wedge(simd, &self.rays, group))
+            },
+        );
         let mut limit = greatest(simd, &self.rays.limit, group.lanes);
         let (mut child, mut lanes) = (root, group.lanes);
         self.stack.clear();
         loop {
             if child.is_block() {
-                self.test(child, group, lanes);
+                simd.vectorize(
+                    #[inline(always)]
+                    || self.test::<A>(child, group, &wedge, lanes),
+                );
                 limit = greatest(simd, &self.rays.limit, group.lanes);
             } else if lanes.count_ones() <= FEW {
-                self.part::<A>(child, group, lanes);
+                simd.vectorize(
+                    #[inline(always)]
+                    || self.part::<A>(child, group, lanes),
+                );
                 limit = greatest(simd, &self.rays.limit, group.lanes);
             } else if let Some(node) = tree.nodes.get(child.0 as usize) {
                 let met = frustum.meet(simd, node, limit);
@@ -243,7 +307,9 @@ impl<S: Simd> Packet<'_, S> {
                     let _ = self.stack.push(waiting);
                     // The nearest last.
                     let mut at = self.stack.len();
-                    while at > from + 1 && let [.., below, above] = &mut self.stack[..at] {
+                    while at > from + 1
+                        && let [.., below, above] = &mut self.stack[..at]
+                    {
                         if !(below.enter < above.enter) {
                             break;
                         }
@@ -278,16 +344,25 @@ pub(super) fn run<S: Simd, A: Answers>(simd: S, tree: &Tree, rays: &[Ray], mut a
     let mut packet = Packet { simd, tree, given: &[], rays: Rays::new(), stack: heapless::Vec::new() };
     for (number, given) in rays.chunks(RAYS).enumerate() {
         packet.given = given;
-        let together = packet.rays.fill(simd, given);
+        let together = simd.vectorize(
+            #[inline(always)]
+            || packet.rays.fill(simd, given),
+        );
         let mut left = together;
         while left != 0 {
             let group = packet.rays.group(simd, left);
             left &= !group.lanes;
-            packet.walk::<A>(root, &group);
+            simd.vectorize(
+                #[inline(always)]
+                || packet.walk::<A>(root, &group),
+            );
         }
         for (lane, ray) in given.iter().enumerate() {
             let hit = if together >> lane & 1 == 0 {
-                walk::closest(simd, tree, ray)
+                simd.vectorize(
+                    #[inline(always)]
+                    || walk::closest(simd, tree, ray),
+                )
             } else {
                 let best = packet.rays.best(lane);
                 (best.primitive != u32::MAX).then_some(best)

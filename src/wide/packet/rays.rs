@@ -1,11 +1,12 @@
-use fearless_simd::{Select, Simd, SimdBase, SimdMask, f32x8, f32x16};
+use fearless_simd::{ExtractToken, Select, Simd, SimdBase, SimdMask, f32x8, f32x16, mask32x16};
 
 use crate::{
     geometry::{
-        MAX_COORDINATE, Ray, ShearLanes,
+        MAX_COORDINATE, Ray, ShearLanes, beyond,
         ray::{FLAT, LONG, SHEARED, SHORT, TINY, WIDENING},
     },
     primitives::Hit,
+    wide::batch::Answers,
 };
 
 /// Rays of a row.
@@ -57,12 +58,12 @@ pub(super) const fn of_lane<T: Copy>(rows: &Rows<T>, lane: usize) -> T {
 #[derive(Debug)]
 pub(super) struct Rays {
     pub origin: [Rows; 3],
-    direction: [Rows; 3],
+    pub direction: [Rows; 3],
     pub entry: [Rows; 3],
     pub exit: [Rows; 3],
     pub t_min: Rows,
-    slope: [Rows; 2],
-    error: Rows,
+    pub slope: [Rows; 2],
+    pub error: Rows,
     /// The parameter of the best hit, or where the ray ends.
     pub t: Rows,
     /// The number of what is hit.
@@ -152,7 +153,7 @@ impl Rays {
         }
         let (t_min, t_max) = (load(simd, &self.t_min, row), load(simd, &self.t, row));
         let end = t_max.min(f32::MAX);
-        self.set_ends(row, end);
+        self.set_ends(row, end, mask32x16::splat(simd, false));
         self.primitive[row].0 = [u32::MAX; LANES];
         let mut plain = t_min.simd_ge(0.0) & t_min.simd_le(t_max) & t_min.simd_le(f32::MAX);
         for axis in 0..3 {
@@ -165,12 +166,13 @@ impl Rays {
         (plain & large).to_bitmask() & 0xffff
     }
 
-    /// Looks no farther than this.
+    /// Looks no farther than this, and no further at all for rays that are `done`.
     #[inline(always)]
-    pub(super) fn set_ends<S: Simd>(&mut self, row: usize, t: f32x16<S>) {
+    pub(super) fn set_ends<S: Simd>(&mut self, row: usize, t: f32x16<S>, done: mask32x16<S>) {
         t.store_array(&mut self.t[row % ROWS].0);
         // As `beyond`.
         let limit = t + t.abs() * (4.0 * WIDENING) + 4.0 * TINY;
+        let limit = done.select(-f32x16::splat(t.token(), f32::INFINITY), limit);
         limit.store_array(&mut self.limit[row % ROWS].0);
     }
 
@@ -230,9 +232,10 @@ impl Rays {
 
     /// Changes it.
     #[inline(always)]
-    pub(super) fn set_best(&mut self, lane: usize, hit: Hit) {
+    pub(super) fn set_best<A: Answers>(&mut self, lane: usize, hit: Hit) {
         let (row, lane) = (lane / LANES % ROWS, lane % LANES);
         (self.t[row].0[lane], self.primitive[row].0[lane]) = (hit.t, hit.primitive);
-        self.limit[row].0[lane] = crate::geometry::beyond(hit.t);
+        let is_done = A::ANY && hit.primitive != u32::MAX;
+        self.limit[row].0[lane] = if is_done { f32::NEG_INFINITY } else { beyond(hit.t) };
     }
 }
