@@ -27,11 +27,14 @@ use crate::{
     primitives::{Hit, Sides, Span},
 };
 
-/// So few rays go on one by one from a node.
-const FEW: u32 = 16;
+/// So few rays for each row that they are in go on one by one from a node.
+const FEW: u32 = 4;
+
+/// And so small a share of their group: one ray in so many.
+const SHARE: u32 = 3;
 
 /// So few rays of a row are tested one by one with a block of triangles.
-const FEW_OF_ROW: u32 = 5;
+const FEW_OF_ROW: u32 = 3;
 
 /// A child that waits: some rays may enter it.
 #[derive(Clone, Copy, Debug)]
@@ -78,6 +81,12 @@ fn corners<S: Simd>(simd: S, block: &Block, count: usize, [x, y, z]: [usize; 3])
 #[inline(always)]
 fn line<S: Simd>(simd: S, block: &Block, count: usize, which: usize) -> f32x8<S> {
     row(simd, block.get(which * count..).and_then(|words| words.first_chunk()).unwrap_or(&[0; WIDTH]))
+}
+
+/// In how many rows there are rays.
+#[inline(always)]
+fn rows_of(lanes: Lanes) -> u32 {
+    (0..ROWS).map(|row| u32::from(of_row(lanes, row) != 0)).sum()
 }
 
 /// The lowest lane.
@@ -162,7 +171,7 @@ impl<S: Simd> Packet<'_, S> {
             let crossings = shear.place(simd, &possible, lanes, (t_min, t));
             let (mut found, mut proven, mut open) = (crossings.t, crossings.proven, crossings.open);
             let decided = open & crossings.decided;
-            if decided & decided.wrapping_sub(1) != 0 {
+            if decided != 0 {
                 let (exact, certain) = simd.vectorize(
                     #[inline(always)]
                     || parameters(simd, &tree.triangle(block, triangle, count), origin, direction),
@@ -282,6 +291,7 @@ impl<S: Simd> Packet<'_, S> {
         );
         let mut limit = greatest(simd, &self.rays.limit, group.lanes);
         let (mut child, mut lanes) = (root, group.lanes);
+        let few = group.lanes.count_ones() / SHARE;
         self.stack.clear();
         loop {
             if child.is_block() {
@@ -290,7 +300,7 @@ impl<S: Simd> Packet<'_, S> {
                     || self.test::<A>(child, group, &wedge, lanes),
                 );
                 limit = greatest(simd, &self.rays.limit, group.lanes);
-            } else if lanes.count_ones() <= FEW {
+            } else if lanes.count_ones() <= few.max(FEW * rows_of(lanes)) {
                 simd.vectorize(
                     #[inline(always)]
                     || self.part::<A>(child, group, lanes),
