@@ -5,10 +5,10 @@ use core::marker::PhantomData;
 
 use fearless_simd::{Simd, SimdBase, SimdFloat, SimdMask, f32x8};
 
-use super::filter::{LARGE_AREA, SMALL, SMALL_AREA, TOLERANCE, U, UNDERFLOW};
+use super::filter::{LARGE_AREA, SHEARED, SMALL, SMALL_AREA, TOLERANCE, U, UNDERFLOW};
 use crate::geometry::{
     PreparedRay,
-    ray::{LIFT, Shear, TINY, WIDENING},
+    ray::{LIFT, TINY, WIDENING},
 };
 
 /// The numbers of many lanes.
@@ -25,7 +25,6 @@ pub(crate) struct ShearLanes<S: Simd, F: Floats<S> = f32x8<S>> {
     /// The origins in this order.
     origin: [F; 3],
     slope: [F; 2],
-    error: F,
     inverse: F,
     /// Whether the rays go the other way along the major axis.
     backward: bool,
@@ -41,8 +40,6 @@ pub(crate) struct Wedge<S: Simd> {
     pub(crate) origin: [[f32x8<S>; 2]; 3],
     /// The least and the greatest slopes.
     pub(crate) slope: [[f32x8<S>; 2]; 2],
-    /// The greatest error.
-    pub(crate) error: f32x8<S>,
 }
 
 impl<S: Simd> Wedge<S> {
@@ -71,7 +68,7 @@ impl<S: Simd> Wedge<S> {
         let depths = [[a[2] - last, a[2] - first], [b[2] - last, b[2] - first], [c[2] - last, c[2] - first]];
         let [da, db, dc] = depths;
         let deep = (da[0].abs().max(da[1].abs()) + db[0].abs().max(db[1].abs())) + dc[0].abs().max(dc[1].abs());
-        let error = (self.error * deep + UNDERFLOW) * LIFT;
+        let error = (deep * SHEARED + UNDERFLOW) * LIFT;
         let (x0, x1) = self.span(simd, 0, [a[0], b[0], c[0]], depths);
         let (y0, y1) = self.span(simd, 1, [a[1], b[1], c[1]], depths);
         let beside = x0.simd_gt(error) | x1.simd_lt(-error) | y0.simd_gt(error) | y1.simd_lt(-error);
@@ -115,24 +112,21 @@ fn beyond_all<S: Simd, F: Floats<S>>(t: F) -> F {
 impl<S: Simd> ShearLanes<S> {
     #[inline(always)]
     pub(crate) fn new(simd: S, ray: &PreparedRay) -> Self {
-        let Shear { major, origin, slope, inverse, error } = ray.shear;
+        let shear = &ray.shear;
         let splat = |x: f32| f32x8::splat(simd, x);
-        let axes = [major.next() as usize, major.next().next() as usize, major as usize];
-        Self::of(axes, origin.map(splat), slope.map(splat), (splat(inverse), inverse <= 0.0), splat(error))
+        let major = shear.major;
+        let axes @ [x, y, _] = [major.next() as usize, major.next().next() as usize, major as usize];
+        let origin = axes.map(|axis| splat(ray.views[axis].origin));
+        let slope = [x, y].map(|axis| splat(shear.slope[axis]));
+        Self::of(axes, origin, slope, (splat(shear.inverse), shear.inverse <= 0.0))
     }
 }
 
 impl<S: Simd, F: Floats<S>> ShearLanes<S, F> {
-    /// As [`Shear`] has it of each ray: axes and origin in the order of the shear, and whether all go backward.
+    /// As [`Shear`](crate::geometry::ray::Shear) has it of each ray, in its order; and whether all go backward.
     #[inline(always)]
-    pub(crate) const fn of(
-        axes: [usize; 3],
-        origin: [F; 3],
-        slope: [F; 2],
-        (inverse, backward): (F, bool),
-        error: F,
-    ) -> Self {
-        Self { axes, origin, slope, error, inverse, backward, simd: PhantomData }
+    pub(crate) const fn of(axes: [usize; 3], origin: [F; 3], slope: [F; 2], (inverse, backward): (F, bool)) -> Self {
+        Self { axes, origin, slope, inverse, backward, simd: PhantomData }
     }
 
     /// The corners relative to the origins; their coordinates stand in the order of `axes`.
@@ -150,7 +144,7 @@ impl<S: Simd, F: Floats<S>> ShearLanes<S, F> {
         let (ax, bx, cx) = (a[0] - sx * az, b[0] - sx * bz, c[0] - sx * cz);
         let (ay, by, cy) = (a[1] - sy * az, b[1] - sy * bz, c[1] - sy * cz);
         let (u, v, w) = (cx * by - cy * bx, ax * cy - ay * cx, bx * ay - by * ax);
-        let lifted = self.error * ((az.abs() + bz.abs()) + cz.abs());
+        let lifted = ((az.abs() + bz.abs()) + cz.abs()) * SHEARED;
         let spread = ((ax.abs() + ay.abs()) + (bx.abs() + by.abs())) + (cx.abs() + cy.abs());
         let bound = (lifted + spread * (2.0 * U / LIFT)) * (spread * LIFT) + UNDERFLOW;
         // A NaN makes the bound one, too.

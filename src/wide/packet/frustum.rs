@@ -82,7 +82,7 @@ impl<S: Simd> Frustum<S> {
         let [(x0, x1), (y0, y1)] = slope;
         let slope =
             [[f32x8::splat(simd, x0), f32x8::splat(simd, x1)], [f32x8::splat(simd, y0), f32x8::splat(simd, y1)]];
-        Wedge { axes: group.axes, origin, slope, error: f32x8::splat(simd, greatest(simd, &rays.error, group.lanes)) }
+        Wedge { axes: group.axes, origin, slope }
     }
 
     /// The least and the greatest origin along an axis.

@@ -3,7 +3,7 @@ use fearless_simd::{ExtractToken, Select, Simd, SimdBase, SimdMask, f32x8, f32x1
 use crate::{
     geometry::{
         MAX_COORDINATE, Ray, ShearLanes, beyond,
-        ray::{FLAT, LONG, SHEARED, SHORT, TINY, WIDENING},
+        ray::{LONG, SHORT, TINY, WIDENING},
     },
     primitives::Hit,
     wide::batch::Answers,
@@ -63,7 +63,6 @@ pub(super) struct Rays {
     pub exit: [Rows; 3],
     pub t_min: Rows,
     pub slope: [Rows; 2],
-    pub error: Rows,
     /// The parameter of the best hit, or where the ray ends.
     pub t: Rows,
     /// The number of what is hit.
@@ -97,7 +96,6 @@ impl Rays {
             exit: [EMPTY; 3],
             t_min: EMPTY,
             slope: [EMPTY; 2],
-            error: EMPTY,
             t: EMPTY,
             primitive: [Row([u32::MAX; LANES]); ROWS],
             limit: EMPTY,
@@ -193,11 +191,9 @@ impl Rays {
         for row in 0..ROWS {
             let inverse = load(simd, &self.entry[z], row);
             let slope = [x, y].map(|axis| load(simd, &self.direction[axis], row) * inverse);
-            let error = slope[0].abs().max(slope[1].abs()) * SHEARED + FLAT;
             for (rows, slope) in self.slope.iter_mut().zip(slope) {
                 slope.store_array(&mut rows[row].0);
             }
-            error.store_array(&mut self.error[row].0);
         }
         group
     }
@@ -210,7 +206,7 @@ impl Rays {
         let origin = [load(simd, origin[0], row), load(simd, origin[1], row), load(simd, origin[2], row)];
         let slope = [load(simd, &self.slope[0], row), load(simd, &self.slope[1], row)];
         let inverse = (load(simd, &self.entry[z % 3], row), group.descends[z % 3]);
-        ShearLanes::of(group.axes, origin, slope, inverse, load(simd, &self.error, row))
+        ShearLanes::of(group.axes, origin, slope, inverse)
     }
 
     /// A ray of the group, to test it with eight triangles.
@@ -221,7 +217,7 @@ impl Rays {
         let origin = [splat(simd, origin[0], lane), splat(simd, origin[1], lane), splat(simd, origin[2], lane)];
         let slope = [splat(simd, &self.slope[0], lane), splat(simd, &self.slope[1], lane)];
         let inverse = (splat(simd, &self.entry[z % 3], lane), group.descends[z % 3]);
-        ShearLanes::of(group.axes, origin, slope, inverse, splat(simd, &self.error, lane))
+        ShearLanes::of(group.axes, origin, slope, inverse)
     }
 
     /// A ray's best hit, or its end.
