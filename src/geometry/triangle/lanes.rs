@@ -7,7 +7,7 @@ use fearless_simd::{Simd, SimdBase, SimdFloat, SimdMask, f32x8};
 
 use super::filter::{LARGE_AREA, SHEARED, SMALL, SMALL_AREA, TOLERANCE, U, UNDERFLOW};
 use crate::geometry::{
-    PreparedRay,
+    Axis, PreparedRay,
     ray::{LIFT, TINY, WIDENING},
 };
 
@@ -112,12 +112,16 @@ fn beyond_all<S: Simd, F: Floats<S>>(t: F) -> F {
 impl<S: Simd> ShearLanes<S> {
     #[inline(always)]
     pub(crate) fn new(simd: S, ray: &PreparedRay) -> Self {
-        let shear = &ray.shear;
+        let (shear, [x, y, z, _]) = (&ray.shear, &ray.views);
         let splat = |x: f32| f32x8::splat(simd, x);
-        let major = shear.major;
-        let axes @ [x, y, _] = [major.next() as usize, major.next().next() as usize, major as usize];
-        let origin = axes.map(|axis| splat(ray.views[axis].origin));
-        let slope = [x, y].map(|axis| splat(shear.slope[axis]));
+        // A way for each axis: what is found by its number has to be stored first.
+        let [sx, sy, sz] = shear.slope;
+        let (axes, origin, slope) = match shear.major {
+            Axis::X => ([1, 2, 0], [y, z, x], [sy, sz]),
+            Axis::Y => ([2, 0, 1], [z, x, y], [sz, sx]),
+            Axis::Z => ([0, 1, 2], [x, y, z], [sx, sy]),
+        };
+        let (origin, slope) = (origin.map(|view| splat(view.origin)), slope.map(splat));
         Self::of(axes, origin, slope, (splat(shear.inverse), shear.inverse <= 0.0))
     }
 }
