@@ -65,6 +65,21 @@ impl<S: Simd> Slabs<S> {
         }
     }
 
+    /// A ray from `t_min`, 0 or later, by its axes: whether it goes towards lower coordinates; origin, entry and exit.
+    #[inline(always)]
+    pub(super) fn of(simd: S, descends: [bool; 3], [x, y, z]: [[f32; 3]; 3], t_min: f32) -> Self {
+        let splat = |x: f32| f32x8::splat(simd, x);
+        let near = |axis: usize| 2 * axis + usize::from(descends[axis]);
+        Self {
+            near: [near(0), near(1), near(2)],
+            origin: [x[0], y[0], z[0]].map(splat),
+            entry: [x[1], y[1], z[1]].map(splat),
+            exit: [x[2], y[2], z[2]].map(splat),
+            t_min: splat(t_min),
+            slack: splat(slack(0.0)),
+        }
+    }
+
     /// Which boxes the ray meets, not behind `limit`.
     #[inline(always)]
     pub(super) fn meet(&self, simd: S, node: &Node, limit: f32x8<S>) -> Met<S> {

@@ -1,5 +1,7 @@
 use std::vec::Vec;
 
+use glam::Vec3;
+
 use super::node::{Child, Node, TRIANGLE_WORDS, WIDTH};
 use crate::{
     geometry::{Aabb, PreparedRay, Triangle},
@@ -47,10 +49,18 @@ impl Tree {
         self.blocks.get(child.first() * TRIANGLE_WORDS..)?.first_chunk()
     }
 
-    /// Whether a ray sees the triangle of this number.
+    /// Whether a ray of this mask sees the triangle of this number.
     #[inline(always)]
-    pub(super) fn is_seen(&self, number: u32, ray: &PreparedRay) -> bool {
-        self.masks.is_empty() || self.masks.get(number as usize).is_some_and(|mask| mask & ray.ray().mask != 0)
+    pub(super) fn is_seen(&self, number: u32, seen: u32) -> bool {
+        self.masks.is_empty() || self.masks.get(number as usize).is_some_and(|mask| mask & seen != 0)
+    }
+
+    /// A triangle of the `count` in a block.
+    #[inline(always)]
+    pub(super) fn triangle(&self, block: &Block, lane: usize, count: usize) -> Triangle {
+        let along = |row: usize| f32::from_bits(block.get(row * count + lane).copied().unwrap_or(0));
+        let corner = |i: usize| Vec3::new(along(3 * i), along(3 * i + 1), along(3 * i + 2));
+        Triangle::new(corner(0), corner(1), corner(2))
     }
 
     /// The hit with a triangle of a block that the lanes left open: by the slow tiers if `front` is known, else by all.
@@ -64,15 +74,13 @@ impl Tree {
         ray: &PreparedRay,
         span: &Span,
     ) -> Option<Hit> {
-        let word = |row: usize| block.get(row * count + lane).copied().unwrap_or(0);
-        let corner = |i: usize| [3 * i, 3 * i + 1, 3 * i + 2].map(|row| f32::from_bits(word(row))).into();
-        let triangle = Triangle::new(corner(0), corner(1), corner(2));
+        let triangle = self.triangle(block, lane, count);
         let crossing = match front {
             Some(_) => triangle.decide(ray, front)?,
             None => triangle.intersect(ray, span.t_min(), span.t_max())?,
         };
-        let number = word(TRIANGLE_WORDS - 1);
-        let is_hit = (crossing.front || self.sides == Sides::Both) && self.is_seen(number, ray);
+        let number = block.get((TRIANGLE_WORDS - 1) * count + lane).copied().unwrap_or(0);
+        let is_hit = (crossing.front || self.sides == Sides::Both) && self.is_seen(number, ray.ray().mask);
         if is_hit { span.accept(crossing.t, number) } else { None }
     }
 }
