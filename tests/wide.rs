@@ -20,7 +20,7 @@ use hitscan::{
     parallel,
     primitives::{Sides, Triangles},
     render::{Camera, Light, Renderer},
-    wide::{Options, Simd, WideBvh},
+    wide::{Coherence, Options, Simd, WideBvh},
 };
 
 fn build<P: Triangles + Sync>(triangles: P) -> WideBvh<P> {
@@ -44,7 +44,8 @@ fn compare(simd: Simd, seed: u64, rays: usize) {
         }
         let list = Scene::new(List::new(&mesh).unwrap(), &mesh).unwrap();
         let options = random.pick(&[Options::fast(), Options::balanced(), Options::best()]);
-        let wide = WideBvh::new(&mesh, &options).unwrap().with_simd(simd);
+        let coherence = random.pick(&[Coherence::Measured, Coherence::Coherent, Coherence::Incoherent]);
+        let wide = WideBvh::new(&mesh, &options).unwrap().with_simd(simd).with_coherence(coherence);
         let rays: Vec<Ray> = (0..random.pick(&[1, 3, 8, 64, 1000]))
             .map(|_| {
                 let mask = random.pick(&[0, 1, 2, u32::MAX, u32::MAX, u32::MAX]);
@@ -78,6 +79,80 @@ fn the_wide_tree_answers_as_the_list() {
             scope.spawn(move || compare(simd, seed as u64 + 100 * common::seed(), share));
         }
     });
+}
+
+/// Rays beside each other, as a camera, a light or a sensor casts them.
+fn tile(random: &mut Random, vertices: &[Vec3], family: usize) -> Vec<Ray> {
+    let ray = adversarial_ray(random, family, vertices);
+    let end = ray.at(random.pick(&[0.5, 1.0, 2.0]));
+    // None, little and much beside the way that the ray goes.
+    let size = ray.direction.abs().max_element() * random.pick(&[0.0, 1.0e-6, 1.0e-3, 0.05, 0.05, 0.5]);
+    let step = |random: &mut Random| Vec3::from_array([0; 3].map(|_| random.pick(&[0.0, -0.0, 1.0, -0.5]))) * size;
+    let (x, y) = (step(random), step(random));
+    let (kind, width) = (random.below(3), random.pick(&[4, 8, 16]));
+    let count = 1 + random.below(100);
+    let mut rays: Vec<Ray> = (0..count)
+        .map(|i| {
+            let moved = x * (i % width) as f32 * 0.1 + y * (i / width) as f32 * 0.1;
+            let [origin, direction] = match kind {
+                0 => [ray.origin, ray.direction + moved],
+                1 => [ray.origin + moved, end - (ray.origin + moved)],
+                _ => [ray.origin + moved, ray.direction],
+            };
+            Ray { origin, direction, ..ray }
+        })
+        .collect();
+    // Some are others.
+    while random.one_in(2) {
+        let at = random.below(count);
+        rays[at] = match random.below(5) {
+            0 => Ray { origin: Vec3::NAN, ..rays[at] },
+            1 => Ray { direction: Vec3::new(f32::NAN, 1.0, 0.0), ..rays[at] },
+            2 => rays[at]
+                .starting_at(random.pick(&[0.25, -1.0, f32::NAN, f32::INFINITY]))
+                .up_to(random.pick(&[0.5, f32::NAN])),
+            3 => rays[at].seeing(random.pick(&[0, 1, 2])),
+            _ => adversarial_ray(random, family, vertices),
+        };
+    }
+    rays
+}
+
+#[test]
+fn packets_answer_as_the_list() {
+    let mut random = Random::new(77 + common::seed());
+    let kinds: Vec<Simd> = Simd::available().collect();
+    let (mut cast, mut hits) = (0, 0);
+    while cast < common::rays(1_000_000) {
+        let family = random.below(FAMILIES);
+        let (vertices, triangles) = adversarial_mesh(&mut random, family, 48);
+        let masks: Vec<u32> = triangles.iter().map(|_| random.pick(&[1, 2, 3, u32::MAX])).collect();
+        let mut mesh = Mesh::new(&vertices, &triangles[..]).unwrap();
+        if random.one_in(4) {
+            mesh = mesh.with_sides(Sides::Front);
+        }
+        if random.one_in(4) {
+            mesh = mesh.with_masks(&masks).unwrap();
+        }
+        let list = Scene::new(List::new(&mesh).unwrap(), &mesh).unwrap();
+        let mut wide = WideBvh::new(&mesh, &Options::fast()).unwrap().with_coherence(Coherence::Coherent);
+        for _ in 0..8 {
+            wide = wide.with_simd(random.pick(&kinds));
+            let rays = tile(&mut random, &vertices, family);
+            let mut closest = vec![Some(Hit { t: 7.0, primitive: 7 }); rays.len()];
+            let mut any = vec![true; rays.len()];
+            wide.closest_hits(&rays, &mut closest);
+            wide.any_hits(&rays, &mut any);
+            for ((ray, closest), any) in rays.iter().zip(closest).zip(any) {
+                let expected = list.closest_hit(ray);
+                cast += 1;
+                hits += usize::from(expected.is_some());
+                assert_eq!(bits(closest), bits(expected), "{ray:?} {vertices:?}");
+                assert_eq!(any, expected.is_some(), "{ray:?} {vertices:?}");
+            }
+        }
+    }
+    assert!(hits * 4 > cast, "{hits} of {cast}");
 }
 
 /// Hills of `side` x `side` x 2 triangles.

@@ -108,8 +108,12 @@ impl defmt::Format for Ray {
     }
 }
 
-/// The bits of 2^-100 … 2^100, the largest component of a direction.
-const LARGEST: core::ops::RangeInclusive<u32> = magnitude(7.888_609e-31)..=magnitude(1.267_650_6e30);
+/// 2^-100 and 2^100, between which the largest component of a direction lies.
+pub(crate) const SHORT: f32 = 7.888_609e-31;
+pub(crate) const LONG: f32 = 1.267_650_6e30;
+
+/// Their bits.
+const LARGEST: core::ops::RangeInclusive<u32> = magnitude(SHORT)..=magnitude(LONG);
 
 /// A ray as one axis sees it: the parameter of the plane at `p` is `(p - origin) * entry`.
 #[derive(Clone, Copy, Debug)]

@@ -8,7 +8,9 @@ use std::{vec, vec::Vec};
 use fearless_simd::{Bytes, Simd, SimdBase, f32x8, u32x8};
 
 use super::{
+    coherence::Coherence,
     node::{CHILDREN, Child, ORDERS, WIDTH},
+    packet::{self, Packet},
     permute::permute,
     slabs::{Sides, Slabs, row},
     tree::Tree,
@@ -59,7 +61,7 @@ impl Places {
 }
 
 /// What a query wants of a ray's hits, and where it puts them.
-trait Answers {
+pub(super) trait Answers {
     /// Whether one hit is as good as any other.
     const ANY: bool;
 
@@ -164,7 +166,7 @@ impl Runner {
     #[inline(always)]
     fn test<S: Simd, A: Answers>(&mut self, simd: S, tree: &Tree, waiting: &Waiting<'_>) -> bool {
         let Some(block) = tree.block(self.child) else { return false };
-        let query = Query { simd, tree, ray: &self.ray, shear: ShearLanes::new(simd, &self.ray) };
+        let query = Query { simd, tree, asker: &self.ray, shear: ShearLanes::new(simd, &self.ray) };
         query.improve(block, &mut self.best);
         self.behind = beyond(self.best.t);
         !(A::ANY && self.best.primitive != u32::MAX) && self.next(waiting, self.waiting)
@@ -267,34 +269,46 @@ fn run<S: Simd, A: Answers>(simd: S, tree: &Tree, rays: &[Ray], mut answers: A) 
     Batch { simd, tree, queue, runners, room, enters, children, nodes, blocks }.run();
 }
 
-/// Pairs of rays that are looked at to find out whether neighbours go the same way.
-const PAIRS: usize = 16;
-
-/// Whether rays that follow each other go nearly the same way: then the processor guesses right what each will meet, and one
-/// after the other is faster, unless the tree is so large that they wait for memory.
-fn is_coherent(rays: &[Ray]) -> bool {
-    let step = (rays.len() / PAIRS).max(2);
-    let alike = rays.chunks_exact(step).filter(|rays| {
-        let &[a, b, ..] = rays else { return false };
-        let (a, b) = (a.direction, b.direction);
-        a.dot(b) > 0.0 && a.cross(b).length_squared() < 0.01 * a.length_squared() * b.length_squared()
-    });
-    alike.count() * 4 > rays.chunks_exact(step).len() * 3
+/// How rays go.
+#[derive(PartialEq, Eq)]
+enum Gait {
+    /// One after the other.
+    Alone,
+    /// Some at a time, by turns.
+    ByTurns,
+    /// Neighbours together.
+    Together,
 }
 
-/// Whether to ask one ray after the other.
-fn one_by_one(tree: &Tree, rays: &[Ray]) -> bool {
-    rays.len() < RUNNERS || (tree.bytes() < LARGE && is_coherent(rays))
+impl Gait {
+    /// That of these rays. Where neighbours go the same way but vectors are short, the processor guesses right what each will
+    /// meet, so that one after the other is fastest, unless the tree is so large that they wait for memory.
+    fn of(tree: &Tree, coherence: Coherence, rays: &[Ray], packets: bool) -> Self {
+        if rays.len() < RUNNERS {
+            Self::Alone
+        } else if !coherence.is_found(rays) {
+            Self::ByTurns
+        } else if packets {
+            Self::Together
+        } else if tree.bytes() < LARGE {
+            Self::Alone
+        } else {
+            Self::ByTurns
+        }
+    }
 }
 
 /// The least hits of `rays`.
 #[inline(always)]
-pub(super) fn closest<S: Simd>(simd: S, tree: &Tree, rays: &[Ray], hits: &mut [Option<Hit>]) {
+pub(super) fn closest<S: Simd>(simd: S, tree: &Tree, coherence: Coherence, rays: &[Ray], hits: &mut [Option<Hit>]) {
     let rays = rays.get(..hits.len()).unwrap_or(rays);
-    if one_by_one(tree, rays) {
+    let gait = Gait::of(tree, coherence, rays, Packet::<S>::PAYS);
+    if gait == Gait::Alone {
         for (ray, hit) in rays.iter().zip(hits) {
             *hit = walk::closest(simd, tree, ray);
         }
+    } else if Packet::<S>::PAYS && gait == Gait::Together {
+        packet::run(simd, tree, rays, hits);
     } else {
         run(simd, tree, rays, hits);
     }
@@ -302,12 +316,15 @@ pub(super) fn closest<S: Simd>(simd: S, tree: &Tree, rays: &[Ray], hits: &mut [O
 
 /// Whether `rays` have hits.
 #[inline(always)]
-pub(super) fn any<S: Simd>(simd: S, tree: &Tree, rays: &[Ray], hits: &mut [bool]) {
+pub(super) fn any<S: Simd>(simd: S, tree: &Tree, coherence: Coherence, rays: &[Ray], hits: &mut [bool]) {
     let rays = rays.get(..hits.len()).unwrap_or(rays);
-    if one_by_one(tree, rays) {
+    let gait = Gait::of(tree, coherence, rays, Packet::<S>::PAYS);
+    if gait == Gait::Alone {
         for (ray, hit) in rays.iter().zip(hits) {
             *hit = walk::any(simd, tree, ray);
         }
+    } else if Packet::<S>::PAYS && gait == Gait::Together {
+        packet::run(simd, tree, rays, hits);
     } else {
         run(simd, tree, rays, hits);
     }

@@ -8,7 +8,7 @@
 use fearless_simd::{Bytes, Simd, SimdBase, f32x8, u32x8};
 
 use super::{corners::Corners, node::WIDTH, permute::permute, slabs::row};
-use crate::geometry::{Possible, ShearLanes, Triangle};
+use crate::geometry::{Possible, ShearLanes, Triangle, Wedge};
 
 /// Words before the corners.
 const HEAD: usize = 3;
@@ -51,23 +51,36 @@ impl<'t> Block<'t> {
         self.words.get(HEAD + 3 * self.corners + lane).copied().unwrap_or(u32::MAX)
     }
 
+    /// A corner of a triangle.
+    #[inline(always)]
+    pub(super) fn corner(self, lane: usize, which: usize) -> [f32; 3] {
+        let place = (self.words.get(which).copied().unwrap_or(0) >> (3 * lane) & 7) as usize;
+        let along = |axis: usize| self.words.get(HEAD + axis * self.corners + place).copied().unwrap_or(0);
+        [f32::from_bits(along(0)), f32::from_bits(along(1)), f32::from_bits(along(2))]
+    }
+
     /// A triangle.
+    #[inline(always)]
     pub(super) fn triangle(self, lane: usize) -> Triangle {
-        let [a, b, c] = [0, 1, 2].map(|corner| {
-            let place = (self.words[corner] >> (3 * lane) & 7) as usize;
-            let coordinate = |axis: usize| self.words.get(HEAD + axis * self.corners + place).copied().unwrap_or(0);
-            [0, 1, 2].map(|axis| f32::from_bits(coordinate(axis))).into()
-        });
-        Triangle::new(a, b, c)
+        Triangle::new(self.corner(lane, 0).into(), self.corner(lane, 1).into(), self.corner(lane, 2).into())
     }
 
     /// Which of the triangles may be hit. In lanes that are none there is nothing sensible.
     // Written out: what arrays' `map` makes is not inlined into kernels, and has not their instructions.
     #[inline(always)]
-    pub(super) fn test<S: Simd>(self, simd: S, shear: &ShearLanes<S>) -> Possible<S> {
+    pub(super) fn test<S: Simd>(self, simd: S, shear: &ShearLanes<S>) -> Possible<f32x8<S>> {
         let [x, y, z] = shear.axes;
         let points = shear.shear([self.row(simd, x), self.row(simd, y), self.row(simd, z)]);
         shear.test([self.pick(simd, 0, points), self.pick(simd, 1, points), self.pick(simd, 2, points)])
+    }
+
+    /// Which of the triangles rays of a group may hit.
+    #[inline(always)]
+    pub(super) fn may_hit<S: Simd>(self, simd: S, wedge: &Wedge<S>) -> u32 {
+        let [x, y, z] = wedge.axes;
+        let points = [self.row(simd, x), self.row(simd, y), self.row(simd, z)];
+        let corners = [self.pick(simd, 0, points), self.pick(simd, 1, points), self.pick(simd, 2, points)];
+        wedge.may_hit(simd, corners) & self.lanes()
     }
 
     /// All corners' coordinates along an axis.

@@ -12,10 +12,12 @@ mod batch;
 mod binary;
 mod block;
 mod build;
+mod coherence;
 mod collapse;
 mod corners;
 mod hull;
 mod node;
+mod packet;
 mod permute;
 mod simd;
 mod slabs;
@@ -33,6 +35,7 @@ use fearless_simd::{Level, dispatch};
 use self::{build::Monitor, corners::Corners, node::Child, tree::Tree};
 pub use self::{
     build::{Options, Progress},
+    coherence::Coherence,
     simd::Simd,
 };
 
@@ -71,6 +74,7 @@ const _: () = assert!(2 * SURE_TRIANGLES as usize * block::words(3, 1) <= Child:
 pub struct WideBvh<P> {
     tree: Tree,
     level: Level,
+    coherence: Coherence,
     triangles: P,
 }
 
@@ -131,7 +135,7 @@ impl<P: Triangles + Sync> WideBvh<P> {
         if (0..count).any(|index| triangles.mask(index) != u32::MAX) {
             tree.masks = (0..count).map(|index| triangles.mask(index)).collect();
         }
-        Ok(ControlFlow::Continue(Self { tree, level: Level::new(), triangles }))
+        Ok(ControlFlow::Continue(Self { tree, level: Level::new(), coherence: Coherence::Measured, triangles }))
     }
 }
 
@@ -140,6 +144,12 @@ impl<P: Triangles> WideBvh<P> {
     #[must_use]
     pub fn with_simd(self, simd: Simd) -> Self {
         Self { level: simd.level().unwrap_or(self.level), ..self }
+    }
+
+    /// The same, whose batches are of such rays.
+    #[must_use]
+    pub fn with_coherence(self, coherence: Coherence) -> Self {
+        Self { coherence, ..self }
     }
 
     /// The triangles.
@@ -174,15 +184,16 @@ impl<P: Triangles> WideBvh<P> {
 
     /// The first hits of all rays, as far as there is room for them: what [`closest_hit`](Self::closest_hit) says of each.
     ///
-    /// Rays that go different ways walk in turns, so that while one waits for memory the others do not; neighbours that go the
-    /// same way one after the other. Hand over some hundreds or thousands at a time.
+    /// Rays whose neighbours go the same way, as a camera's do tile by tile, walk in packets of up to 64; others in turns, so that
+    /// while one waits for memory the others do not. Hand over some hundreds or thousands at a time, nearest neighbours next to
+    /// each other: tiles of 8 by 8 rather than rows.
     pub fn closest_hits(&self, rays: &[Ray], hits: &mut [Option<Hit>]) {
-        dispatch!(self.level, simd => batch::closest(simd, &self.tree, rays, hits));
+        dispatch!(self.level, simd => batch::closest(simd, &self.tree, self.coherence, rays, hits));
     }
 
     /// Whether the rays hit anything, as far as there is room for it; see [`closest_hits`](Self::closest_hits).
     pub fn any_hits(&self, rays: &[Ray], hits: &mut [bool]) {
-        dispatch!(self.level, simd => batch::any(simd, &self.tree, rays, hits));
+        dispatch!(self.level, simd => batch::any(simd, &self.tree, self.coherence, rays, hits));
     }
 }
 

@@ -62,6 +62,19 @@ impl<S: Simd> Slabs<S> {
         }
     }
 
+    /// A ray from `t_min`, 0 or later, by its axes: whether it goes towards lower coordinates; origin, entry and exit.
+    #[inline(always)]
+    pub(super) fn of(simd: S, [dx, dy, dz]: [bool; 3], [x, y, z]: [[f32; 3]; 3], t_min: f32) -> Self {
+        Self {
+            near: [usize::from(dx), 2 + usize::from(dy), 4 + usize::from(dz)],
+            origin: splat(simd, [x[0], y[0], z[0]]),
+            entry: splat(simd, [x[1], y[1], z[1]]),
+            exit: splat(simd, [x[2], y[2], z[2]]),
+            t_min: f32x8::splat(simd, t_min),
+            slack: f32x8::splat(simd, slack(0.0)),
+        }
+    }
+
     /// Where the ray enters and leaves along an axis.
     #[inline(always)]
     fn along(&self, simd: S, node: &Node, axis: usize) -> (f32x8<S>, f32x8<S>) {

@@ -4,7 +4,7 @@ use super::{
 };
 
 /// The most children that wait while a ray walks: of each node on the way all but one, and the last one's.
-const ROOM: usize = (WIDTH - 1) * MAX_DEPTH as usize + WIDTH;
+pub(super) const ROOM: usize = (WIDTH - 1) * MAX_DEPTH as usize + WIDTH;
 
 /// Children that wait.
 #[derive(Debug)]

@@ -45,10 +45,10 @@ impl Tree {
         Some(Block::new(words, child.corners()))
     }
 
-    /// Whether a ray sees the triangle of this number.
+    /// Whether a ray of this mask sees the triangle of this number.
     #[inline(always)]
-    pub(super) fn is_seen(&self, number: u32, ray: &PreparedRay) -> bool {
-        self.masks.is_empty() || self.masks.get(number as usize).is_some_and(|mask| mask & ray.ray().mask != 0)
+    pub(super) fn is_seen(&self, number: u32, seen: u32) -> bool {
+        self.masks.is_empty() || self.masks.get(number as usize).is_some_and(|mask| mask & seen != 0)
     }
 
     /// The hit with a triangle of a block that the lanes left open: by the slow tiers if `front` is known, else by all.
@@ -68,7 +68,7 @@ impl Tree {
             None => triangle.intersect(ray, span.t_min(), span.t_max())?,
         };
         let number = block.number(lane);
-        let is_hit = (crossing.front || self.sides == Sides::Both) && self.is_seen(number, ray);
+        let is_hit = (crossing.front || self.sides == Sides::Both) && self.is_seen(number, ray.ray().mask);
         if is_hit { span.accept(crossing.t, number) } else { None }
     }
 }

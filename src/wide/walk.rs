@@ -1,6 +1,6 @@
 //! One ray's way through the tree.
 
-use fearless_simd::{Simd, SimdBase};
+use fearless_simd::{Simd, SimdBase, f32x8};
 
 use super::{
     block::Block,
@@ -12,7 +12,7 @@ use super::{
 use crate::{
     geometry::{PreparedRay, Ray, ShearLanes, beyond},
     primitives::{Hit, Sides, Span},
-    query::{end_of, start_of},
+    query::end_of,
 };
 
 /// A node's children that are met, at least one: the one to go on with; the others wait.
@@ -49,26 +49,47 @@ fn lane(lanes: u32) -> usize {
     lanes.trailing_zeros() as usize & (WIDTH - 1)
 }
 
+/// A ray as it was given, and as it is prepared where that is wanted.
+pub(super) trait Asker {
+    fn ray(&self) -> &Ray;
+
+    /// What `asked` says of the prepared ray.
+    fn prepared(&self, asked: impl FnOnce(&PreparedRay) -> Option<Hit>) -> Option<Hit>;
+}
+
+impl Asker for PreparedRay {
+    #[inline(always)]
+    fn ray(&self) -> &Ray {
+        self.ray()
+    }
+
+    #[inline(always)]
+    fn prepared(&self, asked: impl FnOnce(&PreparedRay) -> Option<Hit>) -> Option<Hit> {
+        asked(self)
+    }
+}
+
 /// What the walks of a ray share.
-pub(super) struct Query<'q, S: Simd> {
+pub(super) struct Query<'q, S: Simd, R> {
     pub simd: S,
     pub tree: &'q Tree,
-    pub ray: &'q PreparedRay,
+    pub asker: &'q R,
     pub shear: ShearLanes<S>,
 }
 
-impl<S: Simd> Query<'_, S> {
+impl<S: Simd, R: Asker> Query<'_, S, R> {
     /// The least hit with a block's triangles not before the ray begins, if it comes before `best`.
     #[inline(always)]
     pub(super) fn improve(&self, block: Block<'_>, best: &mut Hit) {
-        let &Self { simd, tree, ray, ref shear } = self;
+        let &Self { simd, tree, asker, ref shear } = self;
         let possible = block.test(simd, shear);
         let lanes = possible.lanes & block.lanes();
         if lanes == 0 {
             return;
         }
-        let from = start_of(ray);
-        let crossings = shear.place(simd, &possible, lanes, (from.t, best.t));
+        let from = Hit { t: asker.ray().t_min, primitive: 0 };
+        let limits = (f32x8::splat(simd, from.t), f32x8::splat(simd, best.t));
+        let crossings = shear.place(simd, &possible, lanes, limits);
         let mut proven = crossings.proven;
         if tree.sides == Sides::Front {
             proven &= crossings.front();
@@ -79,7 +100,7 @@ impl<S: Simd> Query<'_, S> {
             proven &= proven - 1;
             let number = block.number(lane);
             let hit = Hit { t: t[lane], primitive: number };
-            if hit.precedes(best) && tree.is_seen(number, ray) {
+            if hit.precedes(best) && tree.is_seen(number, asker.ray().mask) {
                 *best = hit;
             }
         }
@@ -87,8 +108,8 @@ impl<S: Simd> Query<'_, S> {
         while open != 0 {
             let lane = lane(open);
             open &= open - 1;
-            let span = Span::new(from, *best);
-            if let Some(hit) = tree.certify(block, lane, crossings.is_front(lane), ray, &span) {
+            let (front, span) = (crossings.is_front(lane), Span::new(from, *best));
+            if let Some(hit) = asker.prepared(|ray| tree.certify(block, lane, front, ray, &span)) {
                 *best = hit;
             }
         }
@@ -101,11 +122,22 @@ pub(super) fn closest<S: Simd>(simd: S, tree: &Tree, ray: &Ray) -> Option<Hit> {
     let prepared = PreparedRay::here(ray);
     let ray = prepared.as_ref()?;
     let slabs = Slabs::new(simd, ray, slabs::Sides::of(ray));
-    let query = Query { simd, tree, ray, shear: ShearLanes::new(simd, ray) };
-    let mut best = end_of(ray);
+    let query = Query { simd, tree, asker: ray, shear: ShearLanes::new(simd, ray) };
+    let best = closest_below(&query, &slabs, tree.root?, end_of(ray));
+    (best.primitive != u32::MAX).then_some(best)
+}
+
+/// The least hit below `child` that comes before `best`, or that.
+#[inline(always)]
+pub(super) fn closest_below<S: Simd, R: Asker>(
+    query: &Query<'_, S, R>,
+    slabs: &Slabs<S>,
+    mut child: Child,
+    mut best: Hit,
+) -> Hit {
+    let (simd, tree) = (query.simd, query.tree);
     let mut end = limit(simd, best.t);
     let mut stack = Stack::new();
-    let mut child = tree.root?;
     loop {
         if !child.is_block() {
             let Some(node) = tree.nodes.get(child.0 as usize) else { break };
@@ -125,20 +157,30 @@ pub(super) fn closest<S: Simd>(simd: S, tree: &Tree, ray: &Ray) -> Option<Hit> {
         let Some(next) = stack.pop(beyond(best.t)) else { break };
         child = next;
     }
-    (best.primitive != u32::MAX).then_some(best)
+    best
 }
 
 /// Whether `ray` has a hit.
 #[inline(always)]
 pub(super) fn any<S: Simd>(simd: S, tree: &Tree, ray: &Ray) -> bool {
     let prepared = PreparedRay::here(ray);
-    let Some(ray) = prepared.as_ref() else { return false };
+    let (Some(ray), Some(root)) = (prepared.as_ref(), tree.root) else { return false };
     let slabs = Slabs::new(simd, ray, slabs::Sides::of(ray));
-    let query = Query { simd, tree, ray, shear: ShearLanes::new(simd, ray) };
-    let until = end_of(ray);
+    let query = Query { simd, tree, asker: ray, shear: ShearLanes::new(simd, ray) };
+    any_below(&query, &slabs, root, end_of(ray))
+}
+
+/// Whether there is a hit below `child` that comes before `until`.
+#[inline(always)]
+pub(super) fn any_below<S: Simd, R: Asker>(
+    query: &Query<'_, S, R>,
+    slabs: &Slabs<S>,
+    mut child: Child,
+    until: Hit,
+) -> bool {
+    let (simd, tree) = (query.simd, query.tree);
     let end = limit(simd, until.t);
     let mut stack = Stack::new();
-    let Some(mut child) = tree.root else { return false };
     loop {
         if !child.is_block() {
             let Some(node) = tree.nodes.get(child.0 as usize) else { return false };

@@ -11,12 +11,17 @@ mod filter;
 #[cfg(feature = "std")]
 mod lanes;
 mod shortcut;
+#[cfg(feature = "std")]
+mod shortcut_lanes;
 
 use glam::Vec3;
 
 use self::filter::{Corner, Verdict};
 #[cfg(feature = "std")]
-pub(crate) use self::lanes::{Possible, ShearLanes};
+pub(crate) use self::{
+    lanes::{Possible, ShearLanes, Wedge},
+    shortcut_lanes::parameters,
+};
 use super::{Aabb, Axis, PreparedRay, moved, ray::beyond};
 use crate::math::{self, greatest, least};
 

@@ -6,7 +6,7 @@ use super::{Crossing, Sign, Triangle, agreement, exact};
 use crate::geometry::PreparedRay;
 
 /// Half an ulp of 1, 2^-53.
-const U: f64 = 1.0 / 9_007_199_254_740_992.0;
+pub(super) const U: f64 = 1.0 / 9_007_199_254_740_992.0;
 
 /// A value and a bound on its error.
 #[derive(Clone, Copy)]
