@@ -2,7 +2,7 @@
 //! through compressed wide BVHs*, 2017.
 //!
 //! Costs are found from the bottom up ([`plan`]); what becomes a node or a block is settled from the top down ([`sketch`]), and
-//! written where it belongs when all sizes are known ([`write`]). Each step by all threads; who does what depends on sizes alone.
+//! written where it belongs when all sizes are known ([`mod@write`]). Each step by all threads; who does what depends on sizes alone.
 
 mod plan;
 mod sketch;
