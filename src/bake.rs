@@ -4,7 +4,7 @@ mod lattice;
 
 use alloc::{vec, vec::Vec};
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 use crate::{
     accel::{Plan, Structure},
@@ -13,8 +13,8 @@ use crate::{
     error::BuildError,
     geometry::Sphere,
     instances::Instance,
-    primitives::{Indices, LatticeMesh, Mesh, Normals, Primitives},
-    render::{Material, Numbers},
+    primitives::{Indices, LatticeMesh, Mesh, Normals, Primitives, TexCoords},
+    render::{Material, Numbers, Texture, Textures},
 };
 
 pub use lattice::{OnLattice, lattice};
@@ -124,6 +124,14 @@ impl Baker {
         self.section(Kind::Normals, counted_halves(normals.len() as u32, numbers))
     }
 
+    /// The same with the texture coordinates of a mesh's vertices, in 4 bytes each: see [`TexCoords`].
+    ///
+    /// What is not finite is moved to the end of the range of those that are.
+    #[must_use]
+    pub fn tex_coords(self, coordinates: &[Vec2]) -> Self {
+        self.section(Kind::TexCoords, TexCoords::packed(coordinates).collect())
+    }
+
     fn indices(self, indices: Indices<'_>, vertices: usize) -> Self {
         let count = indices.len() as u32;
         let corners = (0..count).flat_map(|triangle| indices.get(triangle)).flatten();
@@ -198,6 +206,12 @@ impl Baker {
             }
         };
         baker.section(Kind::MaterialNumbers, halves)
+    }
+
+    /// The same with the textures of materials, by their numbers; what several have in common is stored once.
+    #[must_use]
+    pub fn textures(self, textures: &[Option<Texture<'_>>]) -> Self {
+        self.section(Kind::Textures, Textures::packed(textures))
     }
 
     fn section(mut self, kind: Kind, words: Vec<u32>) -> Self {

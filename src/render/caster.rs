@@ -36,8 +36,8 @@ pub trait Caster {
     fn surface(&self, ray: &Ray, hit: &Hit) -> Surface;
 
     /// The material of what was hit, if the scene knows it: worlds of instances do, for whose primitives, all numbered
-    /// through, nobody has a list. Otherwise the renderer's materials count.
-    fn material(&self, _hit: &Hit) -> Option<Material> {
+    /// through, nobody has a list, and so do [textured](super::Textured) scenes. Otherwise the renderer's materials count.
+    fn material(&self, _hit: &Hit, _surface: &Surface) -> Option<Material> {
         None
     }
 

@@ -18,6 +18,9 @@ mod progressive;
 mod refine;
 mod renderer;
 mod shade;
+mod texture;
+mod textured;
+mod textures;
 mod tile;
 
 pub use camera::Camera;
@@ -34,4 +37,7 @@ pub use patch::Patch;
 pub use progressive::Progressive;
 pub use renderer::{Renderer, TooShort};
 pub use shade::Terms;
+pub use texture::{Filter, Texels, Texture, TextureError, Wrap};
+pub use textured::Textured;
+pub use textures::Textures;
 pub use tile::{Tile, Tiles};

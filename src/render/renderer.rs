@@ -251,7 +251,7 @@ impl<'a, S: Caster + ?Sized> Renderer<'a, S> {
                 return light + self.sky(ray.direction) * share;
             };
             let surface = self.scene.surface(&ray, &hit);
-            let material = self.scene.material(&hit).unwrap_or_else(|| self.materials.of(hit.primitive));
+            let material = self.scene.material(&hit, &surface).unwrap_or_else(|| self.materials.of(hit.primitive));
             let direction = unit(ray.direction);
             let mirrored = if self.terms.reflections && depth < self.bounces { material.reflectivity } else { 0.0 };
             let own = self.phong(&surface, &material, -direction, (depth, patch));

@@ -166,7 +166,7 @@ impl<A: Accelerator, T: Accelerator> Caster for World<'_, A, T> {
         self.scene.surface(ray, hit)
     }
 
-    fn material(&self, hit: &Hit) -> Option<Material> {
+    fn material(&self, hit: &Hit, _surface: &Surface) -> Option<Material> {
         let instances = self.scene.primitives();
         let (instance, primitive) = instances.locate(hit.primitive)?;
         let scene = instances.placed().get(instance as usize)?.scene();
