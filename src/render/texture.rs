@@ -53,7 +53,7 @@ impl Texels<'_> {
             Self::Palette8 { palette, texels } => texels.get(index).and_then(|&number| color(palette, number)),
             Self::Palette4 { palette, texels } => {
                 let pair = texels.get(index / 2).copied();
-                pair.and_then(|pair| color(palette, if index % 2 == 0 { pair & 15 } else { pair >> 4 }))
+                pair.and_then(|pair| color(palette, if index.is_multiple_of(2) { pair & 15 } else { pair >> 4 }))
             }
         };
         let color = color.unwrap_or(0);

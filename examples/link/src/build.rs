@@ -8,8 +8,9 @@ use hitscan::{
     asset::{Asset, Stored},
     from_fn,
     geometry::Bundle,
-    primitives::{Renumbering, Smooth, Spheres},
+    primitives::{Mapped, Renumbering, Smooth, Spheres},
     render::Materials,
+    render::Textures,
 };
 
 use crate::{
@@ -118,7 +119,8 @@ fn assets() {
         read::<Mesh<'_>>(&asset);
         read::<LatticeMesh<'_>>(&asset);
         read::<Spheres<'_>>(&asset);
-        read::<Smooth<'_>>(&asset);
+        read::<Mapped<'_, Smooth<'_>>>(&asset);
+        read::<Textures<'_>>(&asset);
         read::<Materials<'_>>(&asset);
         read::<Renumbering<'_>>(&asset);
         read::<&[Instance]>(&asset);

@@ -9,7 +9,8 @@ use hitscan::{
     error::BuildError,
     geometry::{Bundle, Transform},
     primitives::{
-        Indices, LatticeTriangles, Normals, Order, Proximity, Renumbering, Reordered, Sides, Smooth, Spheres, Surface,
+        Indices, LatticeTriangles, Mapped, Normals, Order, Proximity, Renumbering, Reordered, Sides, Smooth, Spheres,
+        Surface, TexCoords,
     },
 };
 
@@ -40,6 +41,13 @@ pub fn all() {
         if let Ok(list) = List::new(&smooth) {
             cast(Scene::new(list, smooth));
         }
+    }
+    let mut places = None;
+    let coordinates = black_box(TexCoords::new(some(|| vector().truncate(), &mut places)));
+    black_box((coordinates.len(), coordinates.is_empty(), coordinates.get(word())));
+    let mapped = Mapped::new(smooth, &mesh, coordinates);
+    if let Ok(list) = List::new(&mapped) {
+        cast(Scene::new(list, mapped));
     }
     with(&Own);
     lattice(mesh.indices());
