@@ -142,6 +142,12 @@ impl<'a, S: Caster + ?Sized> Renderer<'a, S> {
         self.height
     }
 
+    /// Rays along a side of a pixel.
+    #[must_use]
+    pub const fn samples(&self) -> u32 {
+        self.samples
+    }
+
     /// The picture in tiles of at most this size.
     #[must_use]
     pub fn tiles(&self, width: u32, height: u32) -> Tiles {

@@ -28,7 +28,7 @@ use crate::{
 /// let textured = Textured::new(&scene, materials, Textures::new(&textures));
 /// let camera = Camera::framing(&scene.bounds(), Vec3::Z, Vec3::Y);
 /// let renderer = Renderer::new(&textured, camera, 64, 48).with_ambient(Vec3::ONE);
-/// let [left, right] = [renderer.pixel(18, 31), renderer.pixel(31, 31)];
+/// let [left, right] = [renderer.pixel(24, 38), renderer.pixel(40, 38)];
 /// assert!(left.x > left.y && right.y > right.x);
 /// # Ok::<(), hitscan::Error>(())
 /// ```

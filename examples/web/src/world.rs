@@ -2,8 +2,8 @@ use std::cell::Cell;
 
 use hitscan::{
     Arena, Hit, Mesh, Ray, Scene,
-    accel::{Accelerator, Counted, Structure},
-    geometry::Aabb,
+    accel::{Accelerator, Counted, Entries, Structure},
+    geometry::{Aabb, Bundle},
     glam::{Quat, Vec3},
     primitives::{Smooth, Spheres, Surface},
     render::{Camera, Caster, Materials, Numbers, Renderer},
@@ -120,15 +120,21 @@ impl World {
 /// The one kind of scene: by its name, because behind `dyn` the queries that nobody asks are linked, too.
 type Shapes = Scene<Counted<'static, Structure<'static>>, (Smooth<'static>, Spheres<'static>)>;
 
-/// A scene that counts the rays cast at it.
+/// A scene that counts the rays cast at it, and asks all in one way: of two, both walks of every structure would be linked.
 pub(crate) struct Tally {
     scene: Shapes,
+    /// Where any ray may begin.
+    everywhere: Entries,
     rays: Cell<u64>,
 }
 
 impl Tally {
     fn new(scene: Shapes) -> Self {
-        Self { scene, rays: Cell::new(0) }
+        // Between these two are all rays that begin within reach and are not much longer than 1.
+        const FAR: Vec3 = Vec3::splat(1.0e30);
+        let all = Bundle::around([Ray::new(-FAR, Vec3::splat(-4.0)), Ray::new(FAR, Vec3::splat(4.0))]);
+        let everywhere = all.map(|all| scene.enter(&all)).unwrap_or_default();
+        Self { scene, everywhere, rays: Cell::new(0) }
     }
 
     fn count(&self) {
@@ -138,13 +144,25 @@ impl Tally {
 
 impl Caster for Tally {
     fn closest_hit(&self, ray: &Ray, _depth: u32) -> Option<Hit> {
-        self.count();
-        self.scene.closest_hit(ray)
+        self.closest_hit_from(&self.everywhere, ray)
     }
 
-    fn any_hit(&self, ray: &Ray, _depth: u32) -> bool {
+    fn enter(&self, bundle: &Bundle) -> Entries {
+        self.scene.enter(bundle)
+    }
+
+    fn closest_hit_from(&self, entries: &Entries, ray: &Ray) -> Option<Hit> {
         self.count();
-        self.scene.any_hit(ray)
+        self.scene.closest_hit_from(entries, ray)
+    }
+
+    fn any_hit(&self, ray: &Ray, depth: u32) -> bool {
+        self.any_hit_near(ray, depth, &mut None)
+    }
+
+    fn any_hit_near(&self, ray: &Ray, _depth: u32, last: &mut Option<u32>) -> bool {
+        self.count();
+        self.scene.any_hit_near(ray, last)
     }
 
     fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
