@@ -1,7 +1,7 @@
 use std::cell::Cell;
 
 use hitscan::{
-    Arena, Hit, Mesh, Ray, Scene,
+    Arena, Hit, KdTree, Mesh, Ray, Scene,
     accel::{Accelerator, Counted, Entries, Structure},
     geometry::{Aabb, Bundle},
     glam::{Quat, Vec3},
@@ -44,10 +44,14 @@ impl World {
         let nodes: &'static Cell<u64> = Box::leak(Box::default());
         // Always counted: linking every walk twice would not fit into the module.
         let scene = Scene::new(Counted::new(structure, nodes), shape).map_err(|error| error.to_string())?;
+        let tree = match structure {
+            Structure::KdTree(tree) => Scene::new(Counted::new(tree, nodes), shape).ok(),
+            _ => None,
+        };
 
         let focus = model.focus.unwrap_or(scene.bounds());
         Ok(Self {
-            scene: Tally::new(scene),
+            scene: Tally { scene, tree, rays: Cell::new(0) },
             nodes,
             primitives: structure.primitives(),
             structure_bytes: structure.as_words().len() * 4,
@@ -118,25 +122,18 @@ impl World {
 }
 
 /// The one kind of scene: by its name, because behind `dyn` the queries that nobody asks are linked, too.
-type Shapes = Scene<Counted<'static, Structure<'static>>, (Smooth<'static>, Spheres<'static>)>;
+type Shapes<A> = Scene<Counted<'static, A>, (Smooth<'static>, Spheres<'static>)>;
 
-/// A scene that counts the rays cast at it, and asks all in one way: of two, both walks of every structure would be linked.
+/// A scene that counts the rays cast at it.
 pub(crate) struct Tally {
-    scene: Shapes,
-    /// Where any ray may begin.
-    everywhere: Entries,
+    scene: Shapes<Structure<'static>>,
+    /// The same if its structure is a kD-tree, the only one in which tiles look for where their rays begin: for all of them it
+    /// would not fit into the module.
+    tree: Option<Shapes<KdTree<'static>>>,
     rays: Cell<u64>,
 }
 
 impl Tally {
-    fn new(scene: Shapes) -> Self {
-        // Between these two are all rays that begin within reach and are not much longer than 1.
-        const FAR: Vec3 = Vec3::splat(1.0e30);
-        let all = Bundle::around([Ray::new(-FAR, Vec3::splat(-4.0)), Ray::new(FAR, Vec3::splat(4.0))]);
-        let everywhere = all.map(|all| scene.enter(&all)).unwrap_or_default();
-        Self { scene, everywhere, rays: Cell::new(0) }
-    }
-
     fn count(&self) {
         self.rays.set(self.rays.get() + 1);
     }
@@ -144,16 +141,24 @@ impl Tally {
 
 impl Caster for Tally {
     fn closest_hit(&self, ray: &Ray, _depth: u32) -> Option<Hit> {
-        self.closest_hit_from(&self.everywhere, ray)
+        self.count();
+        self.scene.closest_hit(ray)
     }
 
     fn enter(&self, bundle: &Bundle) -> Entries {
-        self.scene.enter(bundle)
+        match &self.tree {
+            Some(tree) => tree.enter(bundle),
+            None => Entries::whole(self.scene.bounds(), bundle),
+        }
     }
 
     fn closest_hit_from(&self, entries: &Entries, ray: &Ray) -> Option<Hit> {
         self.count();
-        self.scene.closest_hit_from(entries, ray)
+        match &self.tree {
+            Some(tree) => tree.closest_hit_from(entries, ray),
+            None if entries.is_empty() => None,
+            None => self.scene.closest_hit(ray),
+        }
     }
 
     fn any_hit(&self, ray: &Ray, depth: u32) -> bool {
