@@ -1,5 +1,3 @@
-use glam::Vec3;
-
 use super::Material;
 use crate::{
     accel::{Accelerator, Entries, LatticeAccelerator},
@@ -84,11 +82,12 @@ impl<A: LatticeAccelerator, P: LatticeTriangles> Caster for LatticeScene<A, P> {
         Self::closest_hit(self, ray)
     }
 
-    /// Only told whether there is anything: no structure looks for more in whole numbers.
+    /// Tells whether there is anything: rays in whole numbers begin at the root all the same.
+    ///
+    /// What a ray hits lies within its rounding of the line that was meant, so that one beside it, of the wider bundle, passes
+    /// through. Of origins so far away that the width is lost in them, exits are later by more than that.
     fn enter(&self, bundle: &Bundle) -> Entries {
-        let Aabb { min, max } = Caster::bounds(self);
-        let off = Vec3::splat(rounding(self));
-        Entries::whole(Aabb::new(min - off, max + off), bundle)
+        self.accelerator().enter(&bundle.padded(rounding(self)))
     }
 
     fn closest_hit_from(&self, entries: &Entries, ray: &Ray) -> Option<Hit> {
