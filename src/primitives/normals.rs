@@ -115,6 +115,10 @@ mod tests {
                 assert_eq!(unpacked(Normals::packed(normal * 5.0)), normal);
             }
         }
+        for length in [f32::MAX, 1.0e-38] {
+            let normal = unpacked(Normals::packed(Vec3::new(length, length, 0.0)));
+            assert!((normal - Vec3::new(0.5, 0.5, 0.0).normalize()).length() < 0.02, "{normal}");
+        }
         for none in [Vec3::ZERO, Vec3::NAN, Vec3::new(f32::INFINITY, 0.0, 1.0)] {
             assert_eq!(unpacked(Normals::packed(none)), Vec3::ZERO);
         }

@@ -142,3 +142,21 @@ fn above(surface: &Surface, direction: Vec3, normal: Vec3) -> Vec3 {
     let lifted = (mirrored + geometric * (GRAZING - height)).normalize_or_zero();
     (lifted - direction).try_normalize().unwrap_or(geometric) * side
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn directions_of_any_length_see_the_same() {
+        let vertices = [Vec3::ZERO, Vec3::X, Vec3::Y];
+        let mesh = Mesh::new(&vertices, &[[0_u16, 1, 2]]).unwrap();
+        let normals = [Vec3::Z, Vec3::new(0.5, 0.0, 1.0).normalize(), Vec3::Z];
+        let seen = [1.0, 1.0e-25, 1.0e25].map(|length| {
+            let ray = Ray::new(Vec3::new(0.5, 0.2, 1.0), Vec3::NEG_Z * length);
+            Smooth::new(mesh, &normals).surface(&ray, &Hit { t: 1.0 / length, primitive: 0 }).shading_normal
+        });
+        assert!(seen[0].x > 0.1);
+        assert_eq!(seen, [seen[0]; 3]);
+    }
+}

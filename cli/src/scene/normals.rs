@@ -52,6 +52,16 @@ mod tests {
     }
 
     #[test]
+    fn a_roof_of_any_size_is_rounded() {
+        for size in [1.0e-12, 1.0e12] {
+            let vertices = corners(0.3).map(|corner| corner * size);
+            let mesh = Mesh::new(&vertices, &[[0_u16, 2, 1], [0, 1, 3]]).unwrap();
+            let [ridge, ..] = normals_by_place(&mesh)[..] else { panic!("no normals") };
+            assert!((ridge - Vec3::Y).length() < 1.0e-6, "{ridge}");
+        }
+    }
+
+    #[test]
     fn nothing_is_mirrored_into_the_roof() {
         for slope in [0.35, 0.5, 2.0] {
             let (_, height) = look(0.3, Vec3::new(0.0, -slope, -1.0));
