@@ -17,7 +17,7 @@ use hitscan::{
 use crate::{
     input::{aabb, float, matrix, ray, some, sphere, vector, word},
     own::{Own, asked},
-    plan,
+    plan, render,
 };
 
 /// Casts rays at meshes, spheres and both together, with and without a tree.
@@ -89,6 +89,7 @@ fn lattice(indices: Indices<'_>) {
 fn whole<A: LatticeAccelerator>(structure: Result<A, BuildError>, mesh: impl LatticeTriangles) {
     let Ok(structure) = structure else { return };
     let Ok(scene) = LatticeScene::new(structure, mesh) else { return };
+    render::pixel(&scene);
     black_box((scene.closest_hit(&ray()), scene.any_hit(&ray()), scene.accelerator().primitives()));
     let rays = scene.space().rays(vector(), vector(), vector(), word());
     black_box(rays.size_hint());

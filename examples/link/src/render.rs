@@ -74,6 +74,13 @@ pub fn all() {
     sensor::sees(&scene as &dyn Caster);
 }
 
+/// A pixel of any scene, in a patch.
+pub fn pixel<S: Caster>(scene: &S) {
+    let renderer = Renderer::new(scene, camera(), word(), word()).with_bounces(word());
+    let tile = Tile { x: word(), y: word(), width: word(), height: word() };
+    black_box(renderer.patch(tile).pixel(word(), word()));
+}
+
 /// A texture of every kind, and a picture with it.
 fn textured<S: Caster>(scene: &S, materials: Materials<'_>) {
     let (mut colors, mut bytes) = (None, None);
