@@ -8,7 +8,7 @@ use libfuzzer_sys::fuzz_target;
 #[allow(dead_code)]
 #[path = "../../cli/src/input.rs"]
 mod input;
-#[allow(dead_code)]
+#[allow(dead_code, unused_imports)]
 #[path = "../../cli/src/model/mod.rs"]
 mod model;
 
