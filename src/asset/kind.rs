@@ -17,6 +17,8 @@ pub enum Kind {
     Normals,
     /// How many vertices, the least texture coordinates, the steps between them, then two numbers of 16 bits each.
     TexCoords,
+    /// How many triangles, the place of each, then facets: nine `f32` and a number each.
+    Soup,
     /// Spheres: centre and radius, four `f32` each.
     Spheres,
     /// A kD-tree, as [`KdTree::as_words`](crate::KdTree::as_words) gives it.
@@ -48,13 +50,14 @@ pub enum Kind {
 }
 
 impl Kind {
-    const KNOWN: [Self; 19] = [
+    const KNOWN: [Self; 20] = [
         Self::Vertices,
         Self::LatticeVertices,
         Self::NarrowIndices,
         Self::WideIndices,
         Self::Normals,
         Self::TexCoords,
+        Self::Soup,
         Self::Spheres,
         Self::KdTree,
         Self::CompactKdTree,
@@ -79,6 +82,7 @@ impl Kind {
             Self::WideIndices => u32::from_le_bytes(*b"idx4"),
             Self::Normals => u32::from_le_bytes(*b"nrml"),
             Self::TexCoords => u32::from_le_bytes(*b"txuv"),
+            Self::Soup => u32::from_le_bytes(*b"soup"),
             Self::Spheres => u32::from_le_bytes(*b"sphr"),
             Self::KdTree => u32::from_le_bytes(*b"kdtr"),
             Self::CompactKdTree => u32::from_le_bytes(*b"kdt4"),
@@ -96,8 +100,20 @@ impl Kind {
         }
     }
 
+    /// Their codes, looked through where they lie: as comparisons with constants they would take four times the bytes.
+    const CODES: [u32; Self::KNOWN.len()] = {
+        let mut codes = [0; Self::KNOWN.len()];
+        let mut place = 0;
+        while place < codes.len() {
+            codes[place] = Self::KNOWN[place].code();
+            place += 1;
+        }
+        codes
+    };
+
     pub(crate) fn from_code(code: u32) -> Self {
-        Self::KNOWN.into_iter().find(|kind| kind.code() == code).unwrap_or(Self::Unknown(code))
+        let place = Self::CODES.iter().position(|&known| known == code);
+        place.and_then(|place| Self::KNOWN.get(place).copied()).unwrap_or(Self::Unknown(code))
     }
 
     /// The version that this library writes, and the only one that it reads.
@@ -115,6 +131,7 @@ impl fmt::Display for Kind {
             Self::WideIndices => f.write_str("32-bit indices"),
             Self::Normals => f.write_str("normals"),
             Self::TexCoords => f.write_str("texture coordinates"),
+            Self::Soup => f.write_str("triangle soup"),
             Self::Spheres => f.write_str("spheres"),
             Self::KdTree => f.write_str("kD-tree"),
             Self::CompactKdTree => f.write_str("compact kD-tree"),
