@@ -101,6 +101,7 @@ impl Kind {
     }
 
     /// Their codes, looked through where they lie: as comparisons with constants they would take four times the bytes.
+    #[allow(clippy::indexing_slicing, reason = "evaluated by the compiler")]
     const CODES: [u32; Self::KNOWN.len()] = {
         let mut codes = [0; Self::KNOWN.len()];
         let mut place = 0;
