@@ -259,7 +259,13 @@ impl<A: Accelerator, P: Primitives> Primitives for Instances<'_, A, P> {
         let line = instance.transform.ray_back(ray.ray()).starting_at(f32::NEG_INFINITY).up_to(f32::INFINITY);
         let mut prepared = line.prepare();
         let local = prepared.as_mut()?;
-        local.set_interval(span.t_min(), span.t_max());
+        // What lies before the bounds is clamped to where they begin, so it is looked for, too: from where the scene begins
+        // and not from the end of the line, which would put off all exits without end.
+        let t_min = if span.t_min() > f32::MIN { span.t_min() } else { scene.bounds().beginning(local)? };
+        if t_min > span.t_max() {
+            return None;
+        }
+        local.set_interval(t_min, span.t_max());
         let mut inner = Inner::new(span.numbered_from(instance.first));
         scene.search(local, &mut inner);
         inner.hit().map(|hit| Hit { primitive: hit.primitive.saturating_add(instance.first), ..hit })

@@ -6,14 +6,18 @@ mod common;
 #[path = "instances/deep.rs"]
 mod deep;
 
+use std::cell::Cell;
+
 use common::{Random, adversarial_mesh, adversarial_ray, bits, boxed, noise, point, rays, seed};
 use hitscan::{
     Accelerator, Arena, Hit, Instance, Instances, KdTree, List, Mesh, PreparedRay, Primitives, Ray, Scene, Span,
+    accel::{Plan, Structure},
     from_fn,
     geometry::{Aabb, Transform, Triangle},
     glam::{Mat3, Vec3},
     instances::InstanceError,
     kdtree::Options,
+    primitives::Counted,
     query::Progress,
 };
 
@@ -356,4 +360,43 @@ fn an_empty_scene_can_be_placed_and_is_never_hit() {
     let scene = Scene::new(tree, instances).unwrap();
     assert!(!scene.any_hit(&Ray::new(Vec3::NEG_Z, Vec3::Z)));
     assert_eq!(instances.locate(0), None);
+}
+
+#[test]
+fn a_placed_scene_takes_about_as_many_tests_as_by_itself() {
+    let side = 40_u16;
+    let height = |x: u16, y: u16| (f32::from(x) * 0.4).sin() + (f32::from(y) * 0.3).cos();
+    let vertices: Vec<Vec3> =
+        (0..=side).flat_map(|y| (0..=side).map(move |x| Vec3::new(f32::from(x), f32::from(y), height(x, y)))).collect();
+    let corners: Vec<[u16; 3]> = (0..side * side)
+        .flat_map(|n| {
+            let a = n / side * (side + 1) + n % side;
+            [[a, a + 1, a + side + 1], [a + side + 2, a + side + 1, a + 1]]
+        })
+        .collect();
+    let mesh = Mesh::new(&vertices, &*corners).unwrap();
+    let place = Transform::new(linear(&mut Random::new(3)), Vec3::new(70.0, -40.0, 9.0)).unwrap();
+    let mut random = Random::new(21);
+    let rays: Vec<Ray> = (0..200)
+        .map(|_| {
+            let target = Vec3::new(random.unit(), random.unit(), 0.5) * f32::from(side);
+            let origin = target + Vec3::new(random.unit() * 80.0 - 40.0, 30.0, 60.0);
+            Ray::new(origin, target - origin)
+        })
+        .collect();
+    let mut memory = vec![0; 1 << 18];
+    for plan in Plan::all() {
+        let tests = Cell::new(0);
+        let counted = Counted::new(&mesh, &tests);
+        let structure = Structure::build(&counted, &mut Arena::new(&mut memory), &plan).unwrap();
+        let scenes = [Scene::new(structure, counted).unwrap()];
+        let hits = rays.iter().filter(|ray| scenes[0].closest_hit(ray).is_some()).count();
+        let alone = tests.replace(0);
+        let mut placed = [Instance::new(0, place)];
+        let instances = Instances::place(&scenes, &mut placed).unwrap();
+        let scene = Scene::new(List::new(&instances).unwrap(), instances).unwrap();
+        let there = rays.iter().filter(|ray| scene.closest_hit(&place.ray(ray)).is_some()).count();
+        assert!(hits > 50 && there.abs_diff(hits) < 3, "{plan:?}: {there} of {hits}");
+        assert!(tests.get() < alone * 11 / 10, "{plan:?}: {} tests in place of {alone}", tests.get());
+    }
 }

@@ -1,6 +1,9 @@
 use glam::Vec3;
 
-use super::{Axis, PreparedRay, in_range};
+use super::{
+    Axis, PreparedRay, in_range,
+    ray::{TINY, WIDENING},
+};
 use crate::math::{self, greatest, least};
 
 /// An axis-aligned box: all points between two corners, both included.
@@ -168,6 +171,14 @@ impl Aabb {
             exit = least(ray.exit(axis, far), exit);
         }
         if enter > exit { None } else { Some((enter, exit)) }
+    }
+
+    /// A finite parameter before which the line hits nothing in the box: what is certified may be hit 2^-16 before the
+    /// [interval](Self::interval), all else only within it. `None` if it misses the box.
+    #[inline]
+    pub(crate) fn beginning(&self, ray: &PreparedRay) -> Option<f32> {
+        let (enter, _) = self.interval(ray)?;
+        Some(greatest(enter - enter.abs() * (4.0 * WIDENING) - 4.0 * TINY, f32::MIN))
     }
 }
 

@@ -52,6 +52,28 @@ fn materials_and_pictures_are_those_of_the_parts() {
 }
 
 #[test]
+fn a_world_is_described_part_by_part() {
+    let folder = Folder::new();
+    folder.write("world.toml", WORLD);
+    folder.succeed("bake world.toml -o world.hits");
+    for world in ["world.toml", "world.hits"] {
+        let text = folder.succeed(&format!("info {world}"));
+        let said = text.split_whitespace().collect::<Vec<_>>().join(" ");
+        for line in [
+            "8 triangles, 4 of their own placed 2 times",
+            "size [6.000007, 2.000004, 2.000004]",
+            "instances 2",
+            "part 0 placed 2 times",
+            "triangles 4",
+        ] {
+            assert!(said.contains(line), "{line}: {text}");
+        }
+    }
+    let text = folder.refuse("info world.hits --target m4");
+    assert!(text.contains("is a world of placed scenes"), "{text}");
+}
+
+#[test]
 fn plants_are_placed_in_thousands() {
     let folder = Folder::new();
     folder.write(
@@ -97,7 +119,7 @@ fn descriptions_that_say_nothing_sensible_are_refused() {
         folder.refuse(&format!("bake good.toml -o out.hits {options}"));
     }
     folder.succeed("bake good.toml -o good.hits");
-    for command in ["info good.hits", "compare good.hits -n 100 --rounds 1", "render good.hits -s bvh"] {
+    for command in ["info good.hits --target m4", "compare good.hits -n 100 --rounds 1", "render good.hits -s bvh"] {
         folder.refuse(command);
     }
     let mut bytes = folder.read("good.hits");

@@ -1,3 +1,5 @@
+mod world;
+
 use std::{path::PathBuf, process::ExitCode};
 
 use hitscan::{LatticeMesh, Mesh, Primitives, asset::Asset, bake, geometry::Aabb, primitives::Indices};
@@ -7,20 +9,20 @@ use crate::{
     chip::Chip,
     failure::Failure,
     progress::Progress,
-    scene::{Anatomy, Built, Instancing, Shape, Source, StructureArgs, View},
+    scene::{Anatomy, Built, Instancing, Shape, Source, StructureArgs, View, broken},
     units::count,
 };
 
-/// Describe a mesh or an asset
+/// Describe a mesh, an asset or a world
 ///
 /// Prints counts, bounds, whether it is closed, triangles without area and duplicates, the depth and expected cost of the
 /// structure, which is built first for a mesh, triangles and bytes with and without instancing (glTF can place a mesh
-/// several times), and the bytes of an asset's sections.
+/// several times), and the bytes of an asset's sections; for a world of placed meshes what it places, part by part.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples: hitscan info bunny.obj.gz\n          hitscan info robot.hits --target m0")]
 pub struct Info {
-    /// Mesh (.obj, .stl, .ply, .gltf, .glb, each also with .gz) or baked asset
-    #[arg(value_name = "MODEL|ASSET")]
+    /// Mesh (.obj, .stl, .ply, .gltf, .glb, each also with .gz), baked asset or world (.toml)
+    #[arg(value_name = "MODEL|ASSET|WORLD")]
     model: PathBuf,
     #[command(flatten)]
     structure: StructureArgs,
@@ -32,6 +34,9 @@ pub struct Info {
 impl Info {
     pub fn run(&self) -> Result<ExitCode, Failure> {
         let source = Source::load(&self.model)?;
+        if let Some(asset) = source.world() {
+            return self.run_world(&source, &asset);
+        }
         let view = source.view(&self.model)?;
         let built = view.build(self.structure.structure, self.structure.preset)?;
         let progress = Progress::spinner("looking at the triangles …");
@@ -45,7 +50,7 @@ impl Info {
         self.describe_instancing(&mut text, &source, &built, &view)?;
         let mut asset = None;
         if let Source::Asset { words, .. } = &source {
-            describe_sections(&mut text, words);
+            describe_sections(&mut text, &Asset::from_words(words).map_err(broken)?);
             asset = Some(words.len() * 4);
         }
         if let Some(chip) = self.target {
@@ -61,6 +66,18 @@ impl Info {
 }
 
 impl Info {
+    /// Describes a world of placed scenes.
+    fn run_world(&self, source: &Source, asset: &Asset<'_>) -> Result<ExitCode, Failure> {
+        if self.target.is_some() {
+            let what = format!("{}: is a world of placed scenes, --target is for meshes", self.model.display());
+            return Err(Failure::new(what, "name one of the meshes that are placed"));
+        }
+        let mut text = format!("{}\n", self.model.display());
+        world::describe(&mut text, &self.model, source, asset, &self.structure)?;
+        print(&text)?;
+        Ok(ExitCode::SUCCESS)
+    }
+
     /// What there is once and how often it is placed, and the bytes of both ways to keep it.
     fn describe_instancing(
         &self,
@@ -153,8 +170,8 @@ fn describe_structure(text: &mut String, built: &Built, view: &View<'_>) -> Resu
     Ok(())
 }
 
-fn describe_sections(text: &mut String, words: &[u32]) {
-    let Ok(asset) = Asset::from_words(words) else { return };
+fn describe_sections(text: &mut String, asset: &Asset<'_>) {
+    let words = asset.as_words();
     let mut rest = words.len();
     for section in asset.sections() {
         rest -= section.words.len();
