@@ -98,7 +98,7 @@ impl<A: Accelerator, P: Primitives> Scene<A, P> {
     #[must_use]
     pub fn closest_hit(&self, ray: &Ray) -> Option<Hit> {
         // Kept where it was made: to move a prepared ray takes a hundred instructions.
-        let prepared = ray.prepare();
+        let prepared = PreparedRay::here(ray);
         let ray = prepared.as_ref()?;
         let mut closest = Closest::new(ray);
         self.search(ray, &mut closest);
@@ -211,7 +211,7 @@ impl<A: Accelerator, P: Primitives> Scene<A, P> {
     /// Whether the ray has a hit that `keep` accepts.
     #[must_use]
     pub fn any_hit_where(&self, ray: &Ray, keep: impl FnMut(&Hit) -> bool) -> bool {
-        let Some(ray) = &ray.prepare() else { return false };
+        let Some(ray) = &PreparedRay::here(ray) else { return false };
         let mut any = Where::new(Any::new(ray), keep);
         self.search(ray, &mut any);
         any.into_inner().found()

@@ -13,7 +13,8 @@ use hitscan::{
     bvh,
     geometry::{Sphere, Transform},
     glam::Vec3,
-    primitives::{Renumbering, Reordered, Spheres},
+    grid, kdtree,
+    primitives::{Renumbering, Reordered, Soup, Spheres},
     query::Progress,
     render::{Material, Materials, Numbers},
 };
@@ -51,6 +52,7 @@ fn read(words: &[u32], rays: &[Ray]) -> Result<(), AssetError> {
     walk::<Spheres>(&asset, rays);
     walk::<(Mesh, Spheres)>(&asset, rays);
     walk::<Reordered<Mesh>>(&asset, rays);
+    walk::<Soup>(&asset, rays);
     let _ = asset.read::<Renumbering>();
     if let Ok(materials) = asset.read::<Materials>() {
         (0..99).for_each(|primitive| _ = materials.of(primitive));
@@ -86,6 +88,12 @@ fn assets() -> Vec<Vec<u32>> {
     let corners = bake::reorder(&mesh, &order);
     let reordered = Mesh::new(&vertices, &corners[..]).unwrap();
     assets.push(Baker::new().mesh(&reordered).structure(structure(&plan, &words)).numbers(&order).finish());
+
+    for plan in [Plan::KdTree(kdtree::Options::fast()), Plan::Grid(grid::Options::fast())] {
+        let words = bake::build(&mesh, &plan).unwrap();
+        let (words, order) = bake::gathered(&structure(&plan, &words)).unwrap();
+        assets.push(Baker::new().soup(&mesh, &order).structure(structure(&plan, &words)).finish());
+    }
 
     let both = (mesh, Spheres::new(&spheres).unwrap());
     let words = bake::build(&both, &plan).unwrap();

@@ -29,6 +29,14 @@ impl<'a> References<'a> {
         Self::Wide(words)
     }
 
+    /// Whether there are no words.
+    pub(crate) const fn is_identity(&self) -> bool {
+        match self {
+            Self::Narrow(halves) => halves.is_empty(),
+            Self::Wide(words) => words.is_empty(),
+        }
+    }
+
     /// The number behind a reference.
     #[inline(always)]
     pub(crate) fn get(&self, index: u32) -> u32 {
@@ -36,6 +44,25 @@ impl<'a> References<'a> {
         match self {
             Self::Narrow(halves) => halves.get((index ^ SECOND_FIRST) as usize).map_or(index, |&half| u32::from(half)),
             Self::Wide(words) => words.get(index as usize).map_or(index, |&word| word),
+        }
+    }
+}
+
+impl References<'_> {
+    /// The numbers behind a reference and the next one, if there are both.
+    #[inline(always)]
+    pub(crate) fn pair(&self, index: u32) -> Option<(u32, u32)> {
+        let index = index as usize;
+        match self {
+            Self::Narrow(halves) if SECOND_FIRST == 0 => match halves.get(index..index.wrapping_add(2))? {
+                &[first, second] => Some((u32::from(first), u32::from(second))),
+                _ => None,
+            },
+            Self::Narrow(_) => Some((self.get(index as u32), self.get(index as u32 + 1))),
+            Self::Wide(words) => match words.get(index..index.wrapping_add(2))? {
+                &[first, second] => Some((first, second)),
+                _ => None,
+            },
         }
     }
 }

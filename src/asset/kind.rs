@@ -15,6 +15,8 @@ pub enum Kind {
     WideIndices,
     /// How many vertices, then a normal of 16 bits each.
     Normals,
+    /// How many triangles, the place of each, then facets: nine `f32` and a number each.
+    Soup,
     /// Spheres: centre and radius, four `f32` each.
     Spheres,
     /// A kD-tree, as [`KdTree::as_words`](crate::KdTree::as_words) gives it.
@@ -44,12 +46,13 @@ pub enum Kind {
 }
 
 impl Kind {
-    const KNOWN: [Self; 17] = [
+    const KNOWN: [Self; 18] = [
         Self::Vertices,
         Self::LatticeVertices,
         Self::NarrowIndices,
         Self::WideIndices,
         Self::Normals,
+        Self::Soup,
         Self::Spheres,
         Self::KdTree,
         Self::CompactKdTree,
@@ -72,6 +75,7 @@ impl Kind {
             Self::NarrowIndices => u32::from_le_bytes(*b"idx2"),
             Self::WideIndices => u32::from_le_bytes(*b"idx4"),
             Self::Normals => u32::from_le_bytes(*b"nrml"),
+            Self::Soup => u32::from_le_bytes(*b"soup"),
             Self::Spheres => u32::from_le_bytes(*b"sphr"),
             Self::KdTree => u32::from_le_bytes(*b"kdtr"),
             Self::CompactKdTree => u32::from_le_bytes(*b"kdt4"),
@@ -88,8 +92,20 @@ impl Kind {
         }
     }
 
+    /// Their codes, looked through where they lie: as comparisons with constants they would take four times the bytes.
+    const CODES: [u32; Self::KNOWN.len()] = {
+        let mut codes = [0; Self::KNOWN.len()];
+        let mut place = 0;
+        while place < codes.len() {
+            codes[place] = Self::KNOWN[place].code();
+            place += 1;
+        }
+        codes
+    };
+
     pub(crate) fn from_code(code: u32) -> Self {
-        Self::KNOWN.into_iter().find(|kind| kind.code() == code).unwrap_or(Self::Unknown(code))
+        let place = Self::CODES.iter().position(|&known| known == code);
+        place.and_then(|place| Self::KNOWN.get(place).copied()).unwrap_or(Self::Unknown(code))
     }
 
     /// The version that this library writes, and the only one that it reads.
@@ -106,6 +122,7 @@ impl fmt::Display for Kind {
             Self::NarrowIndices => f.write_str("16-bit indices"),
             Self::WideIndices => f.write_str("32-bit indices"),
             Self::Normals => f.write_str("normals"),
+            Self::Soup => f.write_str("triangle soup"),
             Self::Spheres => f.write_str("spheres"),
             Self::KdTree => f.write_str("kD-tree"),
             Self::CompactKdTree => f.write_str("compact kD-tree"),

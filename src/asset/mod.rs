@@ -159,6 +159,12 @@ impl<'a> Asset<'a> {
         self.words.get(at..)?.first_chunk().copied()
     }
 
+    /// The words of the section that an entry names.
+    fn words_of(&self, entry: u32) -> Option<&'a [u32]> {
+        let [.., offset, length] = self.entry(entry)?;
+        self.words.get(offset as usize..)?.get(..length as usize)
+    }
+
     /// All of its words.
     #[must_use]
     pub const fn as_words(&self) -> &'a [u32] {
@@ -169,9 +175,8 @@ impl<'a> Asset<'a> {
     pub fn sections(&self) -> impl Iterator<Item = Section<'a>> + use<'a> {
         let asset = *self;
         (0..self.sections).filter_map(move |entry| {
-            let [kind, version, offset, length] = asset.entry(entry)?;
-            let words = asset.words.get(offset as usize..)?.get(..length as usize)?;
-            Some(Section { kind: Kind::from_code(kind), version, words })
+            let [kind, version, ..] = asset.entry(entry)?;
+            Some(Section { kind: Kind::from_code(kind), version, words: asset.words_of(entry)? })
         })
     }
 
@@ -181,8 +186,9 @@ impl<'a> Asset<'a> {
     ///
     /// [`AssetError::Missing`] if there is none.
     pub fn section(&self, kind: Kind) -> Result<&'a [u32], AssetError> {
-        let found = self.sections().find(|section| section.kind == kind);
-        found.map(|section| section.words).ok_or(AssetError::Missing { kind })
+        let mut entries = 0..self.sections;
+        let found = entries.find(|&entry| self.entry(entry).is_some_and(|[code, ..]| code == kind.code()));
+        found.and_then(|entry| self.words_of(entry)).ok_or(AssetError::Missing { kind })
     }
 
     /// The assets that are parts of it, in order: scenes to be placed.

@@ -1,7 +1,6 @@
 use glam::Vec3;
 
 use super::{Axis, MAX_COORDINATE};
-use crate::math::greatest;
 
 /// The relative slack of every exit, 2^-16 (rule R2 of ARCHITECTURE.md): exits are multiplied by `1 + WIDENING`.
 ///
@@ -19,12 +18,6 @@ pub(crate) const TINY: f32 = f32::MIN_POSITIVE;
 const fn magnitude(x: f32) -> u32 {
     x.to_bits() & 0x7fff_ffff
 }
-
-/// 2^-21, the relative error of a slope times a depth: five roundings, and what their products add; over [`LIFT`].
-const SHEARED: f32 = 1.0 / 2_097_152.0 / LIFT;
-
-/// 2^-46 over [`LIFT`]: what underflow can take from a slope, and no denormal.
-const FLAT: f32 = 1.0 / 70_368_744_177_664.0 / LIFT;
 
 /// 2^64, by which bounds on errors are lifted, so that they overflow before what they bound does.
 pub(crate) const LIFT: f32 = 18_446_744_073_709_551_616.0;
@@ -187,14 +180,10 @@ pub struct PreparedRay {
 pub(crate) struct Shear {
     /// The axis along which the direction is largest: the third one, behind the other two in cyclic order.
     pub(crate) major: Axis,
-    /// The ray's origin in this order.
-    pub(crate) origin: [f32; 3],
-    /// The direction along the first two over that along the major one.
-    pub(crate) slope: [f32; 2],
+    /// By axis: the direction over that along the major one, at most 1 in magnitude.
+    pub(crate) slope: [f32; 3],
     /// One over the direction along the major one.
     pub(crate) inverse: f32,
-    /// By how much the coordinates of a point at depth 1 may be off for the slopes' sake, over [`LIFT`].
-    pub(crate) error: f32,
 }
 
 impl PreparedRay {
@@ -226,13 +215,12 @@ impl PreparedRay {
         let x = AxisView::new(o.x, d.x, forward);
         let y = AxisView::new(o.y, d.y, forward);
         let z = AxisView::new(o.z, d.z, forward);
-        let (origin, slope, inverse) = match major {
-            Axis::X => ([o.y, o.z, o.x], [d.y * x.entry, d.z * x.entry], x.entry),
-            Axis::Y => ([o.z, o.x, o.y], [d.z * y.entry, d.x * y.entry], y.entry),
-            Axis::Z => ([o.x, o.y, o.z], [d.x * z.entry, d.y * z.entry], z.entry),
+        let inverse = match major {
+            Axis::X => x.entry,
+            Axis::Y => y.entry,
+            Axis::Z => z.entry,
         };
-        let error = greatest(slope[0].abs(), slope[1].abs()) * SHEARED + FLAT;
-        let shear = Shear { major, origin, slope, inverse, error };
+        let shear = Shear { major, slope: [d.x * inverse, d.y * inverse, d.z * inverse], inverse };
         let bit = |view: &AxisView, axis: Axis| view.entry.to_bits() >> 31 << axis as u32;
         let descending = (bit(&x, Axis::X) | bit(&y, Axis::Y) | bit(&z, Axis::Z)) * 0x1111_1111;
         let ray = Ray { origin: o, direction: d, t_min, t_max, mask: ray.mask };

@@ -1,5 +1,4 @@
-use super::{Hit, Indices, MeshError, Sides, Span};
-use crate::geometry::Crossing;
+use super::{Indices, MeshError, Sides};
 
 /// What meshes have in common, wherever their vertices are: corners, and from where and by which rays they are seen.
 #[derive(Clone, Copy, Debug)]
@@ -35,11 +34,5 @@ impl<'a> Faces<'a> {
             None => u32::MAX,
             Some(masks) => masks.get(index as usize).copied().unwrap_or(0),
         }
-    }
-
-    /// The hit where a ray crosses a triangle, if it is seen from there and wanted.
-    #[inline(always)]
-    pub(super) fn hit(&self, index: u32, crossing: &Crossing, span: &Span) -> Option<Hit> {
-        if self.sides == Sides::Front && !crossing.front { None } else { span.accept(crossing.t, index) }
     }
 }

@@ -109,8 +109,8 @@ impl Span {
     #[inline(always)]
     #[must_use]
     pub const fn t_min(&self) -> f32 {
-        // What lies before the bounds is clamped to where they begin.
-        if self.from.t > self.enter { self.from.t } else { f32::MIN }
+        // What lies before the bounds is clamped to where they begin; where there are none, nothing is left of this.
+        if self.enter == f32::NEG_INFINITY || self.from.t > self.enter { self.from.t } else { f32::MIN }
     }
 
     /// The greatest parameter that may be accepted: work on larger ones is wasted.
@@ -118,7 +118,7 @@ impl Span {
     #[must_use]
     pub const fn t_max(&self) -> f32 {
         // What lies behind the bounds is clamped to where they end.
-        if self.until.t < self.exit { self.until.t } else { f32::MAX }
+        if self.exit == f32::INFINITY || self.until.t < self.exit { self.until.t } else { f32::MAX }
     }
 }
 

@@ -156,7 +156,7 @@ impl Primitives for LatticeMesh<'_> {
     fn intersect(&self, index: u32, ray: &PreparedRay, span: &Span) -> Option<Hit> {
         let corners = self.corners(index)?.map(|vertex| (&self.lattice, vertex));
         let crossing = intersect_triangle(corners, ray, || (span.t_min(), span.t_max()))?;
-        self.faces.hit(index, &crossing, span)
+        self.faces.sides.see(&crossing, span, index)
     }
 
     fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {

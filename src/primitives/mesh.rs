@@ -6,7 +6,7 @@ use super::{Hit, Indices, Primitives, Probe, Proximity, Span, Surface, faces::Fa
 use crate::{
     asset::{Asset, AssetError, Kind, Stored},
     error::Error,
-    geometry::{Aabb, PreparedRay, Ray, Triangle, intersect_triangle},
+    geometry::{Aabb, Crossing, PreparedRay, Ray, Triangle, intersect_triangle},
 };
 
 /// The sides from which triangles can be hit.
@@ -18,6 +18,14 @@ pub enum Sides {
     Both,
     /// The front only, where the corners run counter-clockwise.
     Front,
+}
+
+impl Sides {
+    /// The hit where a ray crosses the triangle of this number, if it is seen from there and wanted.
+    #[inline(always)]
+    pub(super) fn see(self, crossing: &Crossing, span: &Span, number: u32) -> Option<Hit> {
+        if self == Self::Front && !crossing.front { None } else { span.accept(crossing.t, number) }
+    }
 }
 
 /// Why a mesh was refused.
@@ -168,7 +176,7 @@ impl Primitives for Mesh<'_> {
         let corner = |vertex: u32| self.vertices.get(vertex as usize).map(AsRef::<[f32; 3]>::as_ref);
         let limits = || (span.t_min(), span.t_max());
         let crossing = intersect_triangle([corner(a)?, corner(b)?, corner(c)?], ray, limits)?;
-        self.faces.hit(index, &crossing, span)
+        self.faces.sides.see(&crossing, span, index)
     }
 
     fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {

@@ -10,6 +10,7 @@ mod bvh;
 mod compact;
 mod dualsplit;
 mod grid;
+mod heights;
 mod kdtree;
 mod memory;
 mod octree;

@@ -1,15 +1,15 @@
 //! Knots under structures of every kind, for `bench` and `calibrate`.
 
-use std::{error::Error, fmt::Write as _, fs, path::Path};
+use std::{error::Error, fs, path::Path};
 
 use hitscan::{
-    Mesh, Scene,
+    KdTree, Mesh, Scene,
     accel::{List, Plan, Structure},
     bake::{self, Baker},
     bvh, dualsplit, grid, kdtree, octree,
 };
 
-use crate::{camera_answer, knot};
+use crate::{answer::Answer, camera_answer, knot};
 
 /// What `bench` compares.
 fn plans() -> Vec<(&'static str, Plan)> {
@@ -28,6 +28,22 @@ fn plans() -> Vec<(&'static str, Plan)> {
         ("dual-split balanced", Plan::DualSplit(dualsplit::Options::balanced())),
         ("dual-split fast", Plan::DualSplit(dualsplit::Options::fast())),
     ]
+}
+
+/// The line of a contestant, whose asset goes to a file.
+fn contestant(
+    out: &Path,
+    (size, name): (&str, &str),
+    (triangles, bytes): (usize, usize),
+    asset: Vec<u32>,
+    answer: Answer,
+) -> Result<String, Box<dyn Error>> {
+    let file = out.join(format!("{size} {name}.hits"));
+    fs::write(&file, asset.into_iter().flat_map(u32::to_le_bytes).collect::<Vec<_>>())?;
+    Ok(format!(
+        "    Contestant {{ name: {name:?}, triangles: {triangles}, bytes: {bytes}, baked: Baked {{ bytes: \
+         hitscan::include_asset!({file:?}), answer: {answer:?} }} }},\n"
+    ))
 }
 
 /// The knots under every plan, in the order of the leaves where there are no references.
@@ -50,18 +66,20 @@ pub fn contest(out: &Path, small: bool) -> Result<String, Box<dyn Error>> {
             let mesh = Mesh::new(&vertices, corners.as_slice())?;
             let structure = Structure::open(kind, &words)?;
             let asset = Baker::new().mesh(&mesh).structure(structure).finish();
-            let file = out.join(format!("{size} {name}.hits"));
-            fs::write(&file, asset.into_iter().flat_map(u32::to_le_bytes).collect::<Vec<_>>())?;
             // By the list: the structures are what is compared.
             let answer = camera_answer(&Scene::new(List::new(&mesh)?, &mesh)?);
-            let triangles = corners.len();
-            let bytes = words.len() * 4;
-            writeln!(
-                code,
-                "    Contestant {{ name: {name:?}, triangles: {triangles}, bytes: {bytes}, baked: Baked {{ bytes: \
-                 hitscan::include_asset!({file:?}), answer: {answer:?} }} }},"
-            )?;
+            code += &contestant(out, (size, name), (corners.len(), words.len() * 4), asset, answer)?;
         }
+    }
+    code += "];\n\n/// Triangles that stand where the leaves of a kD-tree want them, where there is room.\npub static SOUPS: &[Contestant] = &[\n";
+    for (size, (along, around)) in knots.into_iter().take(if small { 0 } else { 2 }) {
+        let (vertices, triangles) = knot::mesh(along, around);
+        let mesh = Mesh::new(&vertices, triangles.as_slice())?;
+        let answer = camera_answer(&Scene::new(List::new(&mesh)?, &mesh)?);
+        let words = bake::build(&mesh, &Plan::KdTree(kdtree::Options::fast()))?;
+        let (words, order) = bake::gathered(&Structure::KdTree(KdTree::open(&words)?)).ok_or("a tree has an order")?;
+        let asset = Baker::new().soup(&mesh, &order).structure(KdTree::open(&words)?).finish();
+        code += &contestant(out, (size, "kdtree-soup fast"), (triangles.len(), words.len() * 4), asset, answer)?;
     }
     Ok(code + "];\n")
 }

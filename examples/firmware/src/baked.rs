@@ -1,7 +1,7 @@
 //! Assets in flash, made by `build.rs`: checked once, then used where they lie.
 
 use hitscan::{
-    KdTree, LatticeMesh, LatticeScene, Mesh, Scene,
+    KdTree, LatticeMesh, LatticeScene, Mesh, Primitives, Scene,
     accel::{Accelerator, LatticeAccelerator},
     asset::{Asset, Stored},
     primitives::LatticeTriangles,
@@ -35,6 +35,11 @@ impl Baked {
 
     /// The structure with its mesh.
     pub fn scene_under<A: Accelerator + Stored<'static>>(&self) -> Scene<A, Mesh<'static>> {
+        self.scene_of()
+    }
+
+    /// The structure with its primitives.
+    pub fn scene_of<A: Accelerator + Stored<'static>, P: Primitives + Stored<'static>>(&self) -> Scene<A, P> {
         self.asset().scene().expect("build.rs bakes meshes with their structures")
     }
 

@@ -8,12 +8,12 @@ use hitscan::{
     asset::{Asset, Stored},
     from_fn,
     geometry::Bundle,
-    primitives::{Renumbering, Smooth, Spheres},
+    primitives::{Renumbering, Smooth, Soup, Spheres},
     render::Materials,
 };
 
 use crate::{
-    input::{aabb, float, ray, some, sphere, vector, word},
+    input::{aabb, facet, float, ray, some, sphere, vector, word},
     plan,
 };
 
@@ -23,6 +23,7 @@ pub fn all() {
     let wide = || [word(), word(), word()];
     with(&Mesh::new(some(vector, &mut None), some(corners, &mut None)));
     with(&Mesh::new(some(vector, &mut None), some(wide, &mut None)));
+    with(&Soup::new(some(facet, &mut None), some(word, &mut None)));
     with(&Spheres::new(some(sphere, &mut None)));
     with::<_, ()>(&Ok(from_fn(word(), |_| aabb(), |_, _| Some(float()))));
     assets();
@@ -85,12 +86,16 @@ fn walk<A: Accelerator>(structure: &A) {
 /// What only some can.
 fn one(structure: &Structure<'_>, arena: &mut Arena<'_>) {
     match structure {
-        Structure::Grid(grid) => _ = black_box((grid.resolution(), grid.reference_count())),
+        Structure::Grid(grid) => {
+            black_box((grid.resolution(), grid.reference_count(), grid.is_ordered()));
+            black_box((grid.order().last(), grid.ordered_words().last()));
+        }
         Structure::Octree(tree) => {
             black_box((tree.node_count(), tree.reference_count(), tree.depth(), tree.expected_work()));
         }
         Structure::KdTree(tree) => {
             black_box((tree.node_count(), tree.reference_count(), tree.depth(), tree.expected_work()));
+            black_box((tree.is_ordered(), tree.order().last(), tree.ordered_words().last()));
         }
         Structure::CompactKdTree(tree) => {
             black_box((tree.node_words(), tree.reference_count(), tree.depth()));
@@ -117,13 +122,14 @@ fn assets() {
         read::<Structure<'_>>(&asset);
         read::<Mesh<'_>>(&asset);
         read::<LatticeMesh<'_>>(&asset);
+        read::<Soup<'_>>(&asset);
         read::<Spheres<'_>>(&asset);
         read::<Smooth<'_>>(&asset);
         read::<Materials<'_>>(&asset);
         read::<Renumbering<'_>>(&asset);
         read::<&[Instance]>(&asset);
         black_box(asset.scene::<Structure<'_>, Mesh<'_>>().is_ok());
-        black_box(asset.lattice_scene::<DualSplit<'_>, LatticeMesh<'_>>().is_ok());
+        black_box(asset.lattice_scene::<DualSplit<'_, 16>, LatticeMesh<'_>>().is_ok());
     }
 }
 

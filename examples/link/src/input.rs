@@ -6,6 +6,7 @@ use hitscan::{
     Ray,
     geometry::{Aabb, Sphere},
     glam::{Mat3, Vec3},
+    primitives::Facet,
 };
 
 /// An opaque number.
@@ -41,6 +42,11 @@ pub fn aabb() -> Aabb {
 /// An opaque sphere.
 pub fn sphere() -> Sphere {
     Sphere::new(vector(), float())
+}
+
+/// An opaque triangle of a soup.
+pub fn facet() -> Facet {
+    Facet { corners: [vector(), vector(), vector()].map(|corner| corner.to_array()), number: word() }
 }
 
 /// Opaque things, of which the optimiser does not know how many.

@@ -9,12 +9,12 @@ use hitscan::{
     error::BuildError,
     geometry::{Bundle, Transform},
     primitives::{
-        Indices, LatticeTriangles, Normals, Order, Proximity, Renumbering, Reordered, Sides, Smooth, Spheres, Surface,
+        Indices, LatticeTriangles, Normals, Order, Proximity, Renumbering, Reordered, Sides, Smooth, Soup, Spheres, Surface,
     },
 };
 
 use crate::{
-    input::{aabb, float, matrix, ray, some, sphere, vector, word},
+    input::{aabb, facet, float, matrix, ray, some, sphere, vector, word},
     own::{Own, asked},
     plan,
 };
@@ -43,6 +43,7 @@ pub fn all() {
     }
     with(&Own);
     lattice(mesh.indices());
+    soup();
     with(&spheres);
     with(&(mesh, spheres));
     let (mut numbers, mut places) = (None, None);
@@ -52,6 +53,14 @@ pub fn all() {
     {
         with(&reordered);
         black_box(reordered.inner().len());
+    }
+}
+
+fn soup() {
+    let (mut facets, mut places) = (None, None);
+    if let Ok(soup) = Soup::new(some(facet, &mut facets), some(word, &mut places)) {
+        with(&soup.with_sides(sides()));
+        black_box(soup.facets().len());
     }
 }
 

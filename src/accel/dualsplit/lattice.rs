@@ -13,20 +13,20 @@ use crate::{
 /// The walk through a [`DualSplit`] in whole numbers: that of
 /// [`DualSplitTraversal`](super::DualSplitTraversal), step by step.
 #[derive(Clone, Debug)]
-pub struct DualSplitWalk<'a> {
+pub struct DualSplitWalk<'a, const HEIGHT: usize = MAX_DEPTH> {
     nodes: &'a [u32],
     references: References<'a>,
     /// Whether the first node was visited.
     has_begun: bool,
     /// Far children, the nearest on top.
-    waiting: LatticeWaiting<MAX_DEPTH>,
+    waiting: LatticeWaiting<HEIGHT>,
 }
 
-impl<'a> LatticeAccelerator for DualSplit<'a> {
-    type Walk = DualSplitWalk<'a>;
+impl<'a, const HEIGHT: usize> LatticeAccelerator for DualSplit<'a, HEIGHT> {
+    type Walk = DualSplitWalk<'a, HEIGHT>;
 
     #[inline(always)]
-    fn walk(&self, _ray: &LatticeRay) -> DualSplitWalk<'a> {
+    fn walk(&self, _ray: &LatticeRay) -> DualSplitWalk<'a, HEIGHT> {
         DualSplitWalk {
             nodes: self.nodes,
             references: self.references,
@@ -36,7 +36,7 @@ impl<'a> LatticeAccelerator for DualSplit<'a> {
     }
 }
 
-impl<'a> LatticeWalk for DualSplitWalk<'a> {
+impl<'a, const HEIGHT: usize> LatticeWalk for DualSplitWalk<'a, HEIGHT> {
     type Leaf = Leaf<'a>;
 
     #[inline(never)]
@@ -56,7 +56,7 @@ impl<'a> LatticeWalk for DualSplitWalk<'a> {
                 cell.node = child;
                 for (head, plane) in [(head, planes & 0xffff), (head.turned(), planes >> 16)] {
                     let view = ray.views.get(head.axis_or_leaf() as usize)?;
-                    if head.is_upper() == head.is_descended(ray.descending) {
+                    if head.is_entered(ray.descending) {
                         cell.enter = view.entry(plane).max(cell.enter);
                     } else {
                         cell.exit = view.exit(plane).min(cell.exit);

@@ -66,8 +66,11 @@ const fn number_words(primitives: u32) -> usize {
 /// assert_eq!(hit.primitive, 3);
 /// # Ok::<(), hitscan::Error>(())
 /// ```
+///
+/// A walk keeps `HEIGHT` segments on its stack, of 12 bytes each, in whole numbers of 8: see
+/// [`for_height`](Self::for_height).
 #[derive(Clone, Copy, Debug)]
-pub struct DualSplit<'a> {
+pub struct DualSplit<'a, const HEIGHT: usize = MAX_DEPTH> {
     words: &'a [u32],
     nodes: &'a [u32],
     references: References<'a>,
@@ -127,6 +130,27 @@ impl<'a> DualSplit<'a> {
         }
     }
 
+    /// The same tree for walks with a lower stack; none if it is [deeper](Self::depth).
+    ///
+    /// ```
+    /// # use hitscan::{Arena, DualSplit, Mesh, dualsplit::Options, glam::Vec3};
+    /// # let vertices = [Vec3::ZERO, Vec3::X, Vec3::Y];
+    /// # let mesh = Mesh::new(&vertices, &[[0_u16, 1, 2]])?;
+    /// # let mut memory = [0; DualSplit::words(1, &Options::balanced())];
+    /// let tree = DualSplit::build(&mesh, &mut Arena::new(&mut memory), &Options::balanced())?;
+    /// let tree: DualSplit<'_, 16> = tree.for_height().expect("12 levels or so are enough for a thousand triangles");
+    /// # assert_eq!(tree.depth(), 0);
+    /// # Ok::<(), hitscan::Error>(())
+    /// ```
+    #[must_use]
+    pub fn for_height<const LOWER: usize>(self) -> Option<DualSplit<'a, LOWER>> {
+        let Self { words, nodes, references, lattice, form, primitives, depth, bounds } = self;
+        let same = DualSplit { words, nodes, references, lattice, form, primitives, depth, bounds };
+        (depth as usize <= LOWER).then_some(same)
+    }
+}
+
+impl<'a, const HEIGHT: usize> DualSplit<'a, HEIGHT> {
     /// The tree as words: what a file, flash, a GPU or a message holds.
     #[must_use]
     pub const fn as_words(&self) -> &'a [u32] {
@@ -134,7 +158,7 @@ impl<'a> DualSplit<'a> {
     }
 
     /// The numbers of the primitives in the order of the leaves.
-    pub fn order(&self) -> impl ExactSizeIterator<Item = u32> + use<'a> {
+    pub fn order(&self) -> impl ExactSizeIterator<Item = u32> + use<'a, HEIGHT> {
         let references = self.references;
         (0..self.primitives as usize).map(move |position| references.get(position as u32))
     }
@@ -146,7 +170,7 @@ impl<'a> DualSplit<'a> {
     }
 
     /// The words of the same tree over primitives that the caller has put into [`order`](Self::order): without numbers.
-    pub fn ordered_words(&self) -> impl Iterator<Item = u32> + use<'a> {
+    pub fn ordered_words(&self) -> impl Iterator<Item = u32> + use<'a, HEIGHT> {
         let (primitives, depth, bounds) = (self.primitives, self.depth, self.bounds);
         let nodes = self.nodes.len() as u32;
         let header = Header { nodes, primitives, depth, form: Form::Ordered, bounds };
@@ -200,8 +224,8 @@ impl<'a> DualSplit<'a> {
     }
 }
 
-impl<'a> Accelerator for DualSplit<'a> {
-    type Traversal = DualSplitTraversal<'a>;
+impl<'a, const HEIGHT: usize> Accelerator for DualSplit<'a, HEIGHT> {
+    type Traversal = DualSplitTraversal<'a, HEIGHT>;
 
     fn primitives(&self) -> u32 {
         self.primitives
@@ -212,7 +236,7 @@ impl<'a> Accelerator for DualSplit<'a> {
     }
 
     #[inline]
-    fn traverse(&self, ray: &PreparedRay) -> DualSplitTraversal<'a> {
+    fn traverse(&self, ray: &PreparedRay) -> DualSplitTraversal<'a, HEIGHT> {
         DualSplitTraversal::new(self, ray)
     }
 
@@ -222,13 +246,13 @@ impl<'a> Accelerator for DualSplit<'a> {
     }
 
     #[inline]
-    fn traverse_from(&self, entry: &Entry, ray: &PreparedRay) -> DualSplitTraversal<'a> {
+    fn traverse_from(&self, entry: &Entry, ray: &PreparedRay) -> DualSplitTraversal<'a, HEIGHT> {
         DualSplitTraversal::within(self, entry, ray)
     }
 }
 
 /// What a node is known by is its word. Carves are opened with what they lead to.
-impl<'a> Hierarchy for DualSplit<'a> {
+impl<'a, const HEIGHT: usize> Hierarchy for DualSplit<'a, HEIGHT> {
     type Node = u32;
     type Leaf = Leaf<'a>;
 
@@ -264,9 +288,10 @@ impl<'a> Hierarchy for DualSplit<'a> {
     }
 }
 
-/// The section of a dual-split tree.
-impl<'a> Stored<'a> for DualSplit<'a> {
+/// The section of a dual-split tree, no deeper than the stack of its walks is high.
+impl<'a, const HEIGHT: usize> Stored<'a> for DualSplit<'a, HEIGHT> {
     fn read(asset: &Asset<'a>) -> Result<Self, Error> {
-        Ok(Self::open(asset.section(crate::asset::Kind::DualSplit)?)?)
+        let tree = DualSplit::open(asset.section(crate::asset::Kind::DualSplit)?)?;
+        Ok(tree.for_height().ok_or(DualSplit::too_deep())?)
     }
 }

@@ -119,6 +119,14 @@ impl Head {
         self.0 & UPPER != 0
     }
 
+    /// Whether a ray that descends along the axes of `mask` enters what is left of a carve at its first face: upper where it
+    /// descends, lower where it does not.
+    #[inline(always)]
+    pub(super) const fn is_entered(self, mask: u32) -> bool {
+        // Turned around where bit 3 of the word, which is that of an upper face, is not set.
+        descends(mask ^ 0x00ff_00ff, self.0)
+    }
+
     /// The same with the second face as the first.
     #[inline(always)]
     pub(super) const fn turned(self) -> Self {

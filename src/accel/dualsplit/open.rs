@@ -76,7 +76,7 @@ impl<'a> DualSplit<'a> {
             return Err(error(4, Reason::Bounds));
         }
         if tree.depth as usize > MAX_DEPTH {
-            return Err(error(2, Reason::Depth));
+            return Err(Self::too_deep());
         }
         tree.check_nodes()?;
         if tree.form == Form::Numbered {
@@ -87,6 +87,11 @@ impl<'a> DualSplit<'a> {
             }
         }
         Ok(tree)
+    }
+
+    /// The header names more levels than a stack has.
+    pub(super) const fn too_deep() -> Malformed {
+        Malformed { structure: asset::Kind::DualSplit, word: 2, reason: Reason::Depth }
     }
 
     /// One pass in order: right children follow the left subtrees, so each node has exactly one parent; leaves follow one

@@ -67,7 +67,7 @@ impl Cells<'_> {
     #[inline(always)]
     pub(super) fn of(&self, cell: u32) -> Option<(u32, u32)> {
         let entry = if self.blocks.is_empty() { cell } else { self.rank(cell)? };
-        let (first, end) = (self.offsets.get(entry), self.offsets.get(entry.wrapping_add(1)));
+        let (first, end) = self.offsets.pair(entry)?;
         let count = end.wrapping_sub(first);
         if count == 0 { None } else { Some((first, count)) }
     }

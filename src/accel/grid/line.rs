@@ -54,12 +54,10 @@ impl Planes {
 }
 
 impl Line {
-    /// No cells.
-    pub(super) const NOWHERE: Self = Self { next: 0.0, plane: 0.0, turn: 0.0, behind: 0, stride: 0, near: 0 };
-
-    /// About the last of `count` cells that the ray enters up to where it is at `point`: roundings do not matter.
+    /// About the last of `count` cells that the ray enters up to where it is at `point`, and its number: roundings do not
+    /// matter.
     #[inline(always)]
-    pub(super) fn about(planes: &Planes, count: u32, point: f32, stride: u32, lower: u32) -> Self {
+    pub(super) fn about(planes: &Planes, count: u32, point: f32, stride: u32, lower: u32) -> (Self, u32) {
         let cell = (((point - planes.first) * 0.5 / planes.step) as u32).min(count.wrapping_sub(1));
         let (plane, turn, stride, behind, near) = if planes.view.ascends() {
             (cell + 1, 2.0, stride, count.wrapping_sub(1).wrapping_sub(cell), lower)
@@ -68,7 +66,7 @@ impl Line {
         };
         let plane = (plane * 2) as i32 as f32;
         let line = Self { next: 0.0, plane, turn, behind, stride, near };
-        Self { next: line.ahead(planes), ..line }
+        (Self { next: line.ahead(planes), ..line }, cell)
     }
 
     /// To the last cell that the ray enters up to `enter`, from wherever it is.

@@ -11,6 +11,7 @@ mod line;
 mod met;
 mod open;
 mod options;
+mod order;
 mod resolution;
 mod traverse;
 
@@ -137,8 +138,8 @@ impl<'a> Accelerator for Grid<'a> {
     }
 
     #[inline]
-    fn traverse(&self, _: &PreparedRay) -> GridTraversal<'a> {
-        GridTraversal::new(self)
+    fn traverse(&self, ray: &PreparedRay) -> GridTraversal<'a> {
+        GridTraversal::new(self, ray)
     }
 }
 

@@ -6,7 +6,7 @@ use super::{
 };
 use crate::{
     accel::{Step, Traversal, leaf::References, segment::Segment},
-    geometry::{Aabb, Axis, AxisView, Lattice, PreparedRay, beyond, slack},
+    geometry::{Axis, AxisView, Lattice, PreparedRay, beyond, slack},
     math::{greatest, least},
 };
 
@@ -22,7 +22,6 @@ pub struct GridTraversal<'a> {
     cells: Cells<'a>,
     references: References<'a>,
     octants: &'a [u8],
-    bounds: Aabb,
     lattice: Lattice,
     /// Where the walk is along each axis.
     lines: [Line; 3],
@@ -35,13 +34,23 @@ pub struct GridTraversal<'a> {
     slack: f32,
     /// The number of the cell that the last crossing led to.
     at: u32,
-    /// Whether the first cells are still to be found.
-    begins: bool,
-    /// Whether the cell at hand was not looked at yet.
-    is_new: bool,
-    /// Whether there may be more cells behind the same crossing.
-    is_tied: bool,
+    next: Next,
     tie: Tie,
+}
+
+/// What a walk looks at next.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Next {
+    /// The nearest plane.
+    Plane,
+    /// The cell at hand.
+    Cell,
+    /// The first cell, about which the walk is, or those before it that the ray has not left.
+    Beginning,
+    /// Cells behind the crossing just made.
+    Tie,
+    /// Nothing.
+    Nothing,
 }
 
 /// Cells that are visited at the same crossing: all combinations of going back by up to so many along each axis.
@@ -54,25 +63,47 @@ struct Tie {
 }
 
 impl<'a> GridTraversal<'a> {
-    /// A walk before its beginning, along whichever ray is given to it.
+    /// A walk at the beginning of the ray; made where it stays, because moving it would cost as much as some cells.
     #[inline(always)]
-    pub(super) fn new(grid: &Grid<'a>) -> Self {
-        // The first cells are found where this is when it is walked: it need not be moved then.
+    pub(super) fn new(grid: &Grid<'a>, ray: &PreparedRay) -> Self {
+        let slack = slack(ray.ray().t_min);
+        let segment = if grid.primitives > 0 { Segment::within(&grid.bounds, 0, ray, slack) } else { None };
+        let is_met = segment.is_some();
+        let Segment { enter, exit, .. } = segment.unwrap_or(Segment { node: 0, enter: 0.0, exit: f32::NEG_INFINITY });
+        // Twice the widening of exits.
+        let margin = greatest(enter.abs(), exit.abs()) * (1.0 / 32768.0) + 2.0 * slack;
+        let (mut at, mut stride, mut is_odd) = (0_u32, 1_u32, false);
+        let mut line = |axis: Axis, lower: u32| {
+            let planes = Planes::of(&grid.lattice, ray, axis as usize);
+            let count = grid.lattice.last(axis) / 2;
+            let point = planes.view.origin + enter * axis.of(ray.ray().direction);
+            let (line, cell) = Line::about(&planes, count, point, stride, lower);
+            at = at.wrapping_add(cell.wrapping_mul(stride));
+            stride = stride.wrapping_mul(count);
+            // Written so that NaN is odd.
+            let near = planes.entry(line.plane - line.turn);
+            is_odd |= !(line.next > enter) | (line.before(count) > 0 && !(near + margin < enter));
+            is_odd |= !(planes.view.exit.abs() < f32::INFINITY);
+            line
+        };
+        let (z, y, x) = (line(Axis::Z, 0x55), line(Axis::Y, 0x33), line(Axis::X, 0x0f));
+        let next = match (is_met, is_odd) {
+            (false, _) => Next::Nothing,
+            (true, false) => Next::Cell,
+            (true, true) => Next::Beginning,
+        };
         Self {
             cells: grid.cells,
             references: grid.references,
             octants: grid.octants,
-            bounds: grid.bounds,
             lattice: grid.lattice,
-            lines: [Line::NOWHERE; 3],
-            enter: 0.0,
-            margin: 0.0,
-            exit: f32::NEG_INFINITY,
-            slack: 0.0,
-            at: 0,
-            begins: grid.primitives > 0,
-            is_new: false,
-            is_tied: false,
+            lines: [x, y, z],
+            enter,
+            margin,
+            exit,
+            slack,
+            at,
+            next,
             tie: Tie { most: [0; 3], back: [0; 3] },
         }
     }
@@ -83,40 +114,11 @@ impl<'a> GridTraversal<'a> {
         self.lattice.last(axis) / 2
     }
 
-    /// Finds the first cells, if there are any.
-    #[inline(never)]
-    fn begin(&mut self, ray: &PreparedRay) {
-        self.begins = false;
-        let slack = slack(ray.ray().t_min);
-        let Some(Segment { enter, exit, .. }) = Segment::within(&self.bounds, 0, ray, slack) else { return };
-        (self.enter, self.exit, self.slack, self.is_new) = (enter, exit, slack, true);
-        // Twice the widening of exits.
-        self.margin = greatest(enter.abs(), exit.abs()) * (1.0 / 32768.0) + 2.0 * slack;
-        let (mut at, mut stride, mut is_odd) = (0_u32, 1_u32, false);
-        for (axis, lower) in [(Axis::Z, 0x55), (Axis::Y, 0x33), (Axis::X, 0x0f)] {
-            let planes = Planes::of(&self.lattice, ray, axis as usize);
-            let count = self.count(axis);
-            let point = planes.view.origin + enter * axis.of(ray.ray().direction);
-            let line = Line::about(&planes, count, point, stride, lower);
-            at = at.wrapping_add(line.number(count).wrapping_mul(stride));
-            stride = stride.wrapping_mul(count);
-            self.lines[axis as usize] = line;
-            // Written so that NaN is odd.
-            let near = line.plane - line.turn;
-            let is_off = planes.entry(near) > enter || !(line.next > enter);
-            let is_tied = line.before(count) > 0 && !(planes.exit(near, slack) < enter);
-            is_odd |= is_off || is_tied || !(planes.view.exit.abs() < f32::INFINITY);
-        }
-        self.at = at;
-        if is_odd {
-            self.begin_oddly(ray);
-        }
-    }
-
     /// Finds the first cell where roundings did matter, more than one if the ray has not left those before, and whether
     /// an exit is no number.
+    #[cold]
     #[inline(never)]
-    fn begin_oddly(&mut self, ray: &PreparedRay) {
+    fn begin(&mut self, ray: &PreparedRay) {
         let mut number = 0_u32;
         for axis in Axis::ALL {
             let (planes, count) = (Planes::of(&self.lattice, ray, axis as usize), self.count(axis));
@@ -134,7 +136,9 @@ impl<'a> GridTraversal<'a> {
         self.tie(ray, self.enter, None);
     }
 
-    /// Notes the cells that the ray has not left at `t`, when it crosses a plane of the axis given.
+    /// Notes the cells that the ray has not left at `t`, when it crosses a plane of the axis given: the one at hand and
+    /// perhaps some before it.
+    #[cold]
     #[inline(never)]
     fn tie(&mut self, ray: &PreparedRay, t: f32, crossed: Option<usize>) {
         self.tie = Tie::default();
@@ -145,28 +149,24 @@ impl<'a> GridTraversal<'a> {
                 self.tie.most[axis as usize] = line.back(&planes, self.count(axis), t, self.slack);
             }
         }
-        self.is_tied = self.tie.most != [0; 3];
+        self.next = if self.tie.most == [0; 3] { Next::Cell } else { Next::Tie };
     }
 
-    /// Goes to the next cell of the same crossing, if there is one.
+    /// The next cell of the same crossing, if there is one.
+    #[cold]
     #[inline(never)]
-    fn next_tied(&mut self) -> bool {
+    fn next_tied(&mut self) -> u32 {
+        let places = self.lines.iter().zip(self.tie.back);
+        let cell = places.fold(self.at, |at, (line, back)| at.wrapping_sub(line.stride.wrapping_mul(back)));
         for (back, most) in self.tie.back.iter_mut().zip(self.tie.most) {
             if *back < most {
                 *back += 1;
-                return true;
+                return cell;
             }
             *back = 0;
         }
-        self.is_tied = false;
-        false
-    }
-
-    /// The number of the cell at hand.
-    #[inline(never)]
-    fn tied_cell(&self, at: u32) -> u32 {
-        let places = self.lines.iter().zip(self.tie.back);
-        places.fold(at, |at, (line, back)| at.wrapping_sub(line.stride.wrapping_mul(back)))
+        self.next = Next::Plane;
+        cell
     }
 
     /// The octants of the cell at hand whose three intervals have a point in common with each other and with the ray's,
@@ -200,80 +200,101 @@ impl<'a> GridTraversal<'a> {
         octants
     }
 
-    /// The primitives of a cell that the ray may meet, if there are any.
+    /// Crosses the next plane of an axis, unless that is behind `end`: where that was, and what is added to the number of the cell.
     #[inline(always)]
-    fn met(&self, cell: u32, ray: &PreparedRay, enter: f32, limit: f32) -> Option<Met<'a>> {
-        let (first, count) = self.cells.of(cell)?;
-        let octants = if self.is_tied { 0xff } else { self.on_the_way(ray, enter, limit) };
-        Met::of(self.references, self.octants, first, count, octants)
+    fn cross(&mut self, ray: &PreparedRay, axis: usize, end: f32) -> Option<(f32, u32, usize)> {
+        let planes = Planes::of(&self.lattice, ray, axis);
+        let line = self.lines.get_mut(axis)?;
+        let t = line.next;
+        if t > end {
+            return None;
+        }
+        line.forward(&planes);
+        Some((t, line.stride, axis))
     }
 
-    /// Crosses the next plane of an axis; what is added to the number of the cell.
-    #[inline(always)]
-    fn cross(&mut self, ray: &PreparedRay, axis: usize) -> u32 {
-        let planes = Planes::of(&self.lattice, ray, axis);
-        let Some(line) = self.lines.get_mut(axis) else { return 0 };
-        line.forward(&planes);
-        line.stride
+    /// As [`cross`](Self::cross), where all planes are at infinity, and the ray's end too.
+    #[cold]
+    #[inline(never)]
+    fn cross_at_infinity(&mut self, ray: &PreparedRay, limit: f32) -> Option<(f32, u32, usize)> {
+        if limit < f32::INFINITY {
+            return None;
+        }
+        let axis = self.lines.iter().position(|line| line.behind > 0)?;
+        self.cross(ray, axis, limit)
     }
 
     /// On to the next cell that holds primitives on the ray's way.
     #[inline(always)]
     fn advance<const BOUNDED: bool>(&mut self, ray: &PreparedRay, t_max: f32, budget: &mut u32) -> Step<Met<'a>> {
-        if self.begins {
+        let limit = least(beyond(t_max), self.exit);
+        let end = least(limit, f32::MAX);
+        if self.next == Next::Beginning {
             self.begin(ray);
         }
-        let limit = least(beyond(t_max), self.exit);
-        let finite = least(limit, f32::MAX);
-        let margin = self.margin;
-        let (mut at, mut enter, mut is_new) = (self.at, self.enter, self.is_new);
-        let step = loop {
-            if is_new {
+        loop {
+            if self.next == Next::Tie {
                 if BOUNDED {
                     if *budget == 0 {
-                        break Step::Paused;
+                        return Step::Paused;
                     }
                     *budget -= 1;
                 }
-                let cell = if self.is_tied { self.tied_cell(at) } else { at };
-                if let Some(met) = self.met(cell, ray, enter, limit) {
-                    is_new = false;
-                    break Step::Leaf(met);
+                let cell = self.next_tied();
+                if let Some((first, count)) = self.cells.of(cell)
+                    && let Some(met) = Met::of(self.references, self.octants, first, count, 0xff)
+                {
+                    return Step::Leaf(met);
                 }
-            }
-            is_new = true;
-            if self.is_tied && self.next_tied() {
                 continue;
             }
-            // Across the nearest plane.
-            let [x, y, z] = &self.lines;
-            let is_y = y.next < x.next;
-            let t = if is_y { y.next } else { x.next };
-            let is_z = z.next < t;
-            let t = if is_z { z.next } else { t };
-            let mut axis = if is_z { 2 } else { usize::from(is_y) };
-            if t > finite {
-                // All at infinity.
-                match self.lines.iter().position(|line| line.behind > 0) {
-                    Some(other) if !(t > limit) => axis = other,
-                    _ => {
-                        is_new = false;
-                        break Step::Done;
+            if self.next == Next::Nothing {
+                return Step::Done;
+            }
+            let (mut at, mut enter, margin) = (self.at, self.enter, self.margin);
+            let mut is_new = self.next == Next::Cell;
+            // Without ties all that changes is in registers.
+            let (next, step) = loop {
+                if is_new {
+                    if BOUNDED {
+                        if *budget == 0 {
+                            break (Next::Cell, Some(Step::Paused));
+                        }
+                        *budget -= 1;
+                    }
+                    if let Some((first, count)) = self.cells.of(at) {
+                        let octants = self.on_the_way(ray, enter, limit);
+                        if let Some(met) = Met::of(self.references, self.octants, first, count, octants) {
+                            break (Next::Plane, Some(Step::Leaf(met)));
+                        }
                     }
                 }
+                is_new = true;
+                // Across the nearest plane.
+                let [x, y, z] = &self.lines;
+                let crossed = if y.next < x.next {
+                    if z.next < y.next { self.cross(ray, 2, end) } else { self.cross(ray, 1, end) }
+                } else if z.next < x.next {
+                    self.cross(ray, 2, end)
+                } else {
+                    self.cross(ray, 0, end)
+                };
+                let Some((t, stride, axis)) = crossed.or_else(|| self.cross_at_infinity(ray, limit)) else {
+                    break (Next::Plane, Some(Step::Done));
+                };
+                at = at.wrapping_add(stride);
+                let is_tied = !(enter + margin < t);
+                enter = t;
+                if is_tied {
+                    self.tie(ray, t, Some(axis));
+                    break (self.next, None);
+                }
+            };
+            (self.at, self.enter, self.next) = (at, enter, next);
+            if let Some(step) = step {
+                return step;
             }
-            at = at.wrapping_add(match axis {
-                0 => self.cross(ray, 0),
-                1 => self.cross(ray, 1),
-                _ => self.cross(ray, 2),
-            });
-            if !(enter + margin < t) {
-                self.tie(ray, t, Some(axis));
-            }
-            enter = t;
-        };
-        (self.at, self.enter, self.is_new) = (at, enter, is_new);
-        step
+        }
     }
 }
 

@@ -11,6 +11,7 @@ mod form;
 mod node;
 mod open;
 mod options;
+mod order;
 mod pack;
 mod split;
 mod stage;
@@ -55,8 +56,10 @@ const HEADER_WORDS: usize = 10;
 /// assert_eq!(hit.primitive, 3);
 /// # Ok::<(), hitscan::Error>(())
 /// ```
+///
+/// A walk keeps `HEIGHT` segments on its stack, of 12 bytes each: see [`for_height`](Self::for_height).
 #[derive(Clone, Copy, Debug)]
-pub struct KdTree<'a> {
+pub struct KdTree<'a, const HEIGHT: usize = MAX_DEPTH> {
     words: &'a [u32],
     nodes: &'a [Node],
     references: References<'a>,
@@ -104,6 +107,30 @@ impl<'a> KdTree<'a> {
         bounds: Aabb::EMPTY,
     };
 
+    /// The same tree for walks with a lower stack; none if it is [deeper](Self::depth).
+    ///
+    /// ```
+    /// # use hitscan::{Arena, KdTree, Mesh, Scene, glam::Vec3, kdtree::Options};
+    /// # let vertices = [Vec3::ZERO, Vec3::X, Vec3::Y];
+    /// # let mesh = Mesh::new(&vertices, &[[0_u16, 1, 2]])?;
+    /// # let mut memory = vec![0; KdTree::words(1, &Options::small())];
+    /// let tree = KdTree::build(&mesh, &mut Arena::new(&mut memory), &Options::small())?;
+    /// if let Some(shallow) = tree.for_height::<16>() {
+    ///     let scene = Scene::new(shallow, &mesh)?;
+    ///     # let _ = scene;
+    /// }
+    /// # assert_eq!(tree.depth(), 0);
+    /// # Ok::<(), hitscan::Error>(())
+    /// ```
+    #[must_use]
+    pub fn for_height<const LOWER: usize>(self) -> Option<KdTree<'a, LOWER>> {
+        let Self { words, nodes, references, reference_count, primitives, depth, bounds } = self;
+        let same = KdTree { words, nodes, references, reference_count, primitives, depth, bounds };
+        (depth as usize <= LOWER).then_some(same)
+    }
+}
+
+impl<'a, const HEIGHT: usize> KdTree<'a, HEIGHT> {
     /// The tree as words: what a file, flash, a GPU or a message holds.
     #[must_use]
     pub const fn as_words(&self) -> &'a [u32] {
@@ -163,8 +190,8 @@ impl<'a> KdTree<'a> {
     }
 }
 
-impl<'a> Accelerator for KdTree<'a> {
-    type Traversal = KdTraversal<'a>;
+impl<'a, const HEIGHT: usize> Accelerator for KdTree<'a, HEIGHT> {
+    type Traversal = KdTraversal<'a, HEIGHT>;
 
     fn primitives(&self) -> u32 {
         self.primitives
@@ -175,7 +202,7 @@ impl<'a> Accelerator for KdTree<'a> {
     }
 
     #[inline]
-    fn traverse(&self, ray: &PreparedRay) -> KdTraversal<'a> {
+    fn traverse(&self, ray: &PreparedRay) -> KdTraversal<'a, HEIGHT> {
         KdTraversal::new(self, &self.bounds, 0, ray)
     }
 
@@ -193,12 +220,12 @@ impl<'a> Accelerator for KdTree<'a> {
     }
 
     #[inline]
-    fn traverse_from(&self, entry: &Entry, ray: &PreparedRay) -> KdTraversal<'a> {
+    fn traverse_from(&self, entry: &Entry, ray: &PreparedRay) -> KdTraversal<'a, HEIGHT> {
         KdTraversal::new(self, &entry.bounds, entry.node, ray)
     }
 }
 
-impl<'a> Hierarchy for KdTree<'a> {
+impl<'a, const HEIGHT: usize> Hierarchy for KdTree<'a, HEIGHT> {
     type Node = u32;
     type Leaf = Leaf<'a>;
 
@@ -221,9 +248,10 @@ impl<'a> Hierarchy for KdTree<'a> {
     }
 }
 
-/// The section of a kD-tree.
-impl<'a> Stored<'a> for KdTree<'a> {
+/// The section of a kD-tree, no deeper than the stack of its walks is high.
+impl<'a, const HEIGHT: usize> Stored<'a> for KdTree<'a, HEIGHT> {
     fn read(asset: &Asset<'a>) -> Result<Self, Error> {
-        Ok(Self::open(asset.section(crate::asset::Kind::KdTree)?)?)
+        let tree = KdTree::open(asset.section(crate::asset::Kind::KdTree)?)?;
+        Ok(tree.for_height().ok_or(KdTree::too_deep())?)
     }
 }

@@ -54,7 +54,7 @@ impl<'a> KdTree<'a> {
             return Err(error(4, Reason::Bounds));
         }
         if tree.depth as usize > MAX_DEPTH {
-            return Err(error(3, Reason::Depth));
+            return Err(Self::too_deep());
         }
         tree.check_nodes()?;
         for index in 0..tree.reference_count {
@@ -65,11 +65,18 @@ impl<'a> KdTree<'a> {
         Ok(tree)
     }
 
+    /// The header names more levels than a stack has.
+    pub(super) const fn too_deep() -> Malformed {
+        Malformed { structure: asset::Kind::KdTree, word: 3, reason: Reason::Depth }
+    }
+
     /// One pass in order: right children are the nodes after the left subtrees, so each node has exactly one parent.
     fn check_nodes(&self) -> Result<(), Malformed> {
         // Right children to come, with their depths.
         let mut pending: heapless::Vec<(u32, u32), MAX_DEPTH> = heapless::Vec::new();
         let (mut references, mut depth) = (0_u32, 0_u32);
+        // Where there are no references, leaves of several, and with them all others, are ranges of the primitives.
+        let is_ordered = self.is_ordered();
         let mut ended = false;
         for (index, node) in self.nodes.iter().enumerate() {
             let error =
@@ -98,7 +105,7 @@ impl<'a> KdTree<'a> {
                     if count == 1 && first >= self.primitives {
                         return Err(error(Reason::Primitive));
                     }
-                    if count > 1 {
+                    if count > 1 || is_ordered && count == 1 {
                         if first != references {
                             return Err(error(Reason::References));
                         }
@@ -116,7 +123,7 @@ impl<'a> KdTree<'a> {
         if !ended {
             return Err(end);
         }
-        if references != self.reference_count {
+        if references != if is_ordered { self.primitives } else { self.reference_count } {
             return Err(Malformed { reason: Reason::References, ..end });
         }
         Ok(())

@@ -11,19 +11,19 @@ use crate::{
 
 /// The walk through a [`KdTree`]: front to back, a stack of segments that wait.
 #[derive(Clone, Debug)]
-pub struct KdTraversal<'a> {
+pub struct KdTraversal<'a, const HEIGHT: usize = MAX_DEPTH> {
     nodes: &'a [Node],
     references: References<'a>,
     slack: f32,
     /// The cell to go on with: the whole at first, after a pause the one before which it was; none behind a leaf.
     next: Option<Segment>,
     /// Far children, the nearest on top.
-    waiting: Waiting<MAX_DEPTH>,
+    waiting: Waiting<HEIGHT>,
 }
 
-impl<'a> KdTraversal<'a> {
+impl<'a, const HEIGHT: usize> KdTraversal<'a, HEIGHT> {
     #[inline]
-    pub(super) fn new(tree: &KdTree<'a>, bounds: &Aabb, node: u32, ray: &PreparedRay) -> Self {
+    pub(super) fn new(tree: &KdTree<'a, HEIGHT>, bounds: &Aabb, node: u32, ray: &PreparedRay) -> Self {
         let slack = slack(ray.ray().t_min);
         Self {
             nodes: tree.nodes,
@@ -101,7 +101,7 @@ impl<'a> KdTraversal<'a> {
     }
 }
 
-impl<'a> Traversal for KdTraversal<'a> {
+impl<'a, const HEIGHT: usize> Traversal for KdTraversal<'a, HEIGHT> {
     type Leaf = Leaf<'a>;
 
     fn next_leaf(&mut self, ray: &PreparedRay, t_max: f32) -> Option<Leaf<'a>> {

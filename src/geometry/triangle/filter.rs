@@ -2,10 +2,7 @@
 
 use super::Crossing;
 use crate::{
-    geometry::{
-        Axis, Lattice, PreparedRay, beyond,
-        ray::{LIFT, Shear},
-    },
+    geometry::{Axis, Lattice, PreparedRay, beyond, ray::LIFT},
     math::greatest,
 };
 
@@ -14,6 +11,10 @@ pub(super) const U: f32 = 1.0 / 16_777_216.0;
 
 /// 2^-125: covers what underflow can take from an edge function.
 pub(super) const UNDERFLOW: f32 = 2.0 * f32::MIN_POSITIVE;
+
+/// 2^-21 over [`LIFT`]: by how much the coordinates of a point at depth 1 may be off for a slope's sake, which is at most 1:
+/// five roundings, and what their products and underflow add.
+pub(super) const SHEARED: f32 = 1.0 / 2_097_152.0 / LIFT;
 
 /// The relative error within which `t` is certified, 2^-17.
 pub(super) const TOLERANCE: f32 = 1.0 / 131_072.0;
@@ -82,10 +83,11 @@ pub(super) struct Sheared {
 fn in_order(
     [x, y, z]: [Axis; 3],
     [a, b, c]: [impl Corner; 3],
-    shear: &Shear,
+    ray: &PreparedRay,
     leave: impl Fn([f32; 3], [f32; 3]) -> bool,
 ) -> Option<Sheared> {
-    let ([ox, oy, oz], [sx, sy]) = (shear.origin, shear.slope);
+    let [ox, oy, oz] = [x, y, z].map(|axis| ray.views[axis as usize].origin);
+    let [sx, sy] = [x, y].map(|axis| ray.shear.slope[axis as usize]);
     let depths = [a.along(z) - oz, b.along(z) - oz, c.along(z) - oz];
     let [az, bz, cz] = depths;
     let first = [(a.along(x) - ox) - sx * az, (b.along(x) - ox) - sx * bz, (c.along(x) - ox) - sx * cz];
@@ -107,9 +109,9 @@ pub(super) fn shear(
     leave: impl Fn([f32; 3], [f32; 3]) -> bool,
 ) -> Option<Sheared> {
     match ray.shear.major {
-        Axis::X => in_order([Axis::Y, Axis::Z, Axis::X], corners, &ray.shear, leave),
-        Axis::Y => in_order([Axis::Z, Axis::X, Axis::Y], corners, &ray.shear, leave),
-        Axis::Z => in_order([Axis::X, Axis::Y, Axis::Z], corners, &ray.shear, leave),
+        Axis::X => in_order([Axis::Y, Axis::Z, Axis::X], corners, ray, leave),
+        Axis::Y => in_order([Axis::Z, Axis::X, Axis::Y], corners, ray, leave),
+        Axis::Z => in_order([Axis::X, Axis::Y, Axis::Z], corners, ray, leave),
     }
 }
 
@@ -139,7 +141,7 @@ pub(super) fn edges(s: &Sheared) -> [f32; 3] {
 /// Whether the ray hits, as far as `f32` can prove it.
 #[inline(always)]
 pub(super) fn test(corners: [impl Corner; 3], ray: &PreparedRay) -> Verdict {
-    let lifted = |[az, bz, cz]: [f32; 3]| ray.shear.error * ((az.abs() + bz.abs()) + cz.abs());
+    let lifted = |[az, bz, cz]: [f32; 3]| SHEARED * ((az.abs() + bz.abs()) + cz.abs());
     let leave = |x, z| ONE_BY_ONE && is_beside(x, (lifted(z) + UNDERFLOW) * LIFT);
     let Some(s) = shear(corners, ray, leave) else { return Verdict::Miss };
     let [u, v, w] = edges(&s);

@@ -3,7 +3,7 @@
 
 use fearless_simd::{Simd, SimdBase, SimdMask, f32x8, mask32x8};
 
-use super::filter::{LARGE_AREA, SMALL, SMALL_AREA, TOLERANCE, U, UNDERFLOW};
+use super::filter::{LARGE_AREA, SHEARED, SMALL, SMALL_AREA, TOLERANCE, U, UNDERFLOW};
 use crate::geometry::{PreparedRay, beyond, ray::LIFT};
 
 /// A ray as the test of eight triangles wants it.
@@ -13,7 +13,6 @@ pub(crate) struct ShearLanes<S: Simd> {
     pub(crate) axes: [usize; 3],
     origin: [f32x8<S>; 3],
     slope: [f32x8<S>; 2],
-    error: f32x8<S>,
     inverse: f32,
 }
 
@@ -56,11 +55,11 @@ impl<S: Simd> ShearLanes<S> {
         let shear = &ray.shear;
         let splat = |x: f32| f32x8::splat(simd, x);
         let major = shear.major;
+        let axes @ [x, y, _] = [major.next() as usize, major.next().next() as usize, major as usize];
         Self {
-            axes: [major.next() as usize, major.next().next() as usize, major as usize],
-            origin: shear.origin.map(splat),
-            slope: shear.slope.map(splat),
-            error: splat(shear.error),
+            axes,
+            origin: axes.map(|axis| splat(ray.views[axis].origin)),
+            slope: [x, y].map(|axis| splat(shear.slope[axis])),
             inverse: shear.inverse,
         }
     }
@@ -74,7 +73,7 @@ impl<S: Simd> ShearLanes<S> {
         let (ax, bx, cx) = ((a[0] - ox) - sx * az, (b[0] - ox) - sx * bz, (c[0] - ox) - sx * cz);
         let (ay, by, cy) = ((a[1] - oy) - sy * az, (b[1] - oy) - sy * bz, (c[1] - oy) - sy * cz);
         let (u, v, w) = (cx * by - cy * bx, ax * cy - ay * cx, bx * ay - by * ax);
-        let lifted = self.error * ((az.abs() + bz.abs()) + cz.abs());
+        let lifted = ((az.abs() + bz.abs()) + cz.abs()) * SHEARED;
         let spread = ((ax.abs() + ay.abs()) + (bx.abs() + by.abs())) + (cx.abs() + cy.abs());
         let bound = (lifted + spread * (2.0 * U / LIFT)) * (spread * LIFT) + UNDERFLOW;
         // A NaN makes the bound one, too.

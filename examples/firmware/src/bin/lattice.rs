@@ -88,9 +88,11 @@ fn main() -> ! {
     println!("triangles structure                        structure all in closest     any bytes");
     let mut same = true;
     for contestant in black_box(LATTICES) {
-        same &= match contestant.name.split(' ').next() {
-            Some("lattice-kdtree-compact") => measure::<CompactKdTree>(&counter, contestant),
-            _ => measure::<DualSplit>(&counter, contestant),
+        // Stacks as high as the trees over 5,000 triangles are deep.
+        same &= match contestant.name {
+            "lattice-kdtree-compact small" => measure::<CompactKdTree<20>>(&counter, contestant),
+            "lattice-kdtree-compact balanced" => measure::<CompactKdTree<24>>(&counter, contestant),
+            _ => measure::<DualSplit<16>>(&counter, contestant),
         };
     }
     finish(same)

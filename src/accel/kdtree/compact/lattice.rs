@@ -16,20 +16,20 @@ use crate::{
 /// Its planes are numbers of 14 bits. Times four, they are those of 16 bits up to three; what lies between a plane and the
 /// next one is behind the first and before the second, and both are within what a ray allows for.
 #[derive(Clone, Debug)]
-pub struct CompactKdWalk<'a> {
+pub struct CompactKdWalk<'a, const HEIGHT: usize = MAX_DEPTH> {
     nodes: &'a [u32],
     references: References<'a>,
     /// Whether the first node was visited.
     has_begun: bool,
     /// Far children, the nearest on top.
-    waiting: LatticeWaiting<MAX_DEPTH>,
+    waiting: LatticeWaiting<HEIGHT>,
 }
 
-impl<'a> LatticeAccelerator for CompactKdTree<'a> {
-    type Walk = CompactKdWalk<'a>;
+impl<'a, const HEIGHT: usize> LatticeAccelerator for CompactKdTree<'a, HEIGHT> {
+    type Walk = CompactKdWalk<'a, HEIGHT>;
 
     #[inline(always)]
-    fn walk(&self, _ray: &LatticeRay) -> CompactKdWalk<'a> {
+    fn walk(&self, _ray: &LatticeRay) -> CompactKdWalk<'a, HEIGHT> {
         CompactKdWalk {
             nodes: self.nodes,
             references: self.references,
@@ -39,7 +39,7 @@ impl<'a> LatticeAccelerator for CompactKdTree<'a> {
     }
 }
 
-impl<'a> LatticeWalk for CompactKdWalk<'a> {
+impl<'a, const HEIGHT: usize> LatticeWalk for CompactKdWalk<'a, HEIGHT> {
     type Leaf = Leaf<'a>;
 
     #[inline(never)]

@@ -18,7 +18,7 @@ pub use traverse::CompactKdTraversal;
 
 use self::node::{Kind, kind};
 use super::{
-    Options, Side, build,
+    MAX_DEPTH, Options, Side, build,
     enter::{self, Opened, Planes},
     form::Form,
 };
@@ -44,8 +44,11 @@ use crate::{
 /// assert_eq!(hit.primitive, 3);
 /// # Ok::<(), hitscan::Error>(())
 /// ```
+///
+/// A walk keeps `HEIGHT` segments on its stack, of 12 bytes each, in whole numbers of 8: see
+/// [`for_height`](Self::for_height).
 #[derive(Clone, Copy, Debug)]
-pub struct CompactKdTree<'a> {
+pub struct CompactKdTree<'a, const HEIGHT: usize = MAX_DEPTH> {
     words: &'a [u32],
     /// Nodes, and the words that some need behind them.
     nodes: &'a [u32],
@@ -95,6 +98,16 @@ impl<'a> CompactKdTree<'a> {
         }
     }
 
+    /// The same tree for walks with a lower stack; none if it is [deeper](Self::depth).
+    #[must_use]
+    pub fn for_height<const LOWER: usize>(self) -> Option<CompactKdTree<'a, LOWER>> {
+        let Self { words, nodes, references, reference_count, primitives, depth, bounds, lattice } = self;
+        let same = CompactKdTree { words, nodes, references, reference_count, primitives, depth, bounds, lattice };
+        (depth as usize <= LOWER).then_some(same)
+    }
+}
+
+impl<'a, const HEIGHT: usize> CompactKdTree<'a, HEIGHT> {
     /// The tree as words: what a file, flash, a GPU or a message holds.
     #[must_use]
     pub const fn as_words(&self) -> &'a [u32] {
@@ -120,8 +133,8 @@ impl<'a> CompactKdTree<'a> {
     }
 }
 
-impl<'a> Accelerator for CompactKdTree<'a> {
-    type Traversal = CompactKdTraversal<'a>;
+impl<'a, const HEIGHT: usize> Accelerator for CompactKdTree<'a, HEIGHT> {
+    type Traversal = CompactKdTraversal<'a, HEIGHT>;
 
     fn primitives(&self) -> u32 {
         self.primitives
@@ -132,7 +145,7 @@ impl<'a> Accelerator for CompactKdTree<'a> {
     }
 
     #[inline]
-    fn traverse(&self, ray: &PreparedRay) -> CompactKdTraversal<'a> {
+    fn traverse(&self, ray: &PreparedRay) -> CompactKdTraversal<'a, HEIGHT> {
         CompactKdTraversal::new(self, ray)
     }
 
@@ -150,12 +163,12 @@ impl<'a> Accelerator for CompactKdTree<'a> {
     }
 
     #[inline]
-    fn traverse_from(&self, entry: &Entry, ray: &PreparedRay) -> CompactKdTraversal<'a> {
+    fn traverse_from(&self, entry: &Entry, ray: &PreparedRay) -> CompactKdTraversal<'a, HEIGHT> {
         CompactKdTraversal::within(self, entry, ray)
     }
 }
 
-impl<'a> Hierarchy for CompactKdTree<'a> {
+impl<'a, const HEIGHT: usize> Hierarchy for CompactKdTree<'a, HEIGHT> {
     type Node = u32;
     type Leaf = Leaf<'a>;
 
@@ -179,9 +192,10 @@ impl<'a> Hierarchy for CompactKdTree<'a> {
     }
 }
 
-/// The section of a compact kD-tree.
-impl<'a> Stored<'a> for CompactKdTree<'a> {
+/// The section of a compact kD-tree, no deeper than the stack of its walks is high.
+impl<'a, const HEIGHT: usize> Stored<'a> for CompactKdTree<'a, HEIGHT> {
     fn read(asset: &Asset<'a>) -> Result<Self, Error> {
-        Ok(Self::open(asset.section(crate::asset::Kind::CompactKdTree)?)?)
+        let tree = CompactKdTree::open(asset.section(crate::asset::Kind::CompactKdTree)?)?;
+        Ok(tree.for_height().ok_or(CompactKdTree::too_deep())?)
     }
 }

@@ -34,7 +34,7 @@ impl<'a> CompactKdTree<'a> {
             return Err(error(4, Reason::Bounds));
         }
         if tree.depth as usize > MAX_DEPTH {
-            return Err(error(3, Reason::Depth));
+            return Err(Self::too_deep());
         }
         tree.check_nodes()?;
         for index in 0..tree.reference_count {
@@ -43,6 +43,11 @@ impl<'a> CompactKdTree<'a> {
             }
         }
         Ok(tree)
+    }
+
+    /// The header names more levels than a stack has.
+    pub(super) const fn too_deep() -> Malformed {
+        Malformed { structure: asset::Kind::CompactKdTree, word: 3, reason: Reason::Depth }
     }
 
     /// One pass in order: right children begin where the left subtrees end, so each node has exactly one parent.

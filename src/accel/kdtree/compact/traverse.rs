@@ -14,20 +14,20 @@ use crate::{
 /// The walk through a [`CompactKdTree`]: that through a [`KdTree`](crate::KdTree), step by step, but its planes are
 /// numbers and its children some words ahead.
 #[derive(Clone, Debug)]
-pub struct CompactKdTraversal<'a> {
+pub struct CompactKdTraversal<'a, const HEIGHT: usize = MAX_DEPTH> {
     nodes: &'a [u32],
     references: References<'a>,
     slopes: Slopes,
     /// The cell to go on with: the whole at first, after a pause the one before which it was; none behind a leaf.
     next: Option<Segment>,
     /// Far children, the nearest on top.
-    waiting: Waiting<MAX_DEPTH>,
+    waiting: Waiting<HEIGHT>,
 }
 
-impl<'a> CompactKdTraversal<'a> {
+impl<'a, const HEIGHT: usize> CompactKdTraversal<'a, HEIGHT> {
     /// From an entry: its planes are those of the float arithmetic, whose interval the slopes' contains.
     #[inline]
-    pub(super) fn within(tree: &CompactKdTree<'a>, entry: &Entry, ray: &PreparedRay) -> Self {
+    pub(super) fn within(tree: &CompactKdTree<'a, HEIGHT>, entry: &Entry, ray: &PreparedRay) -> Self {
         let mut walk = Self::new(tree, ray);
         if walk.next.is_some() {
             walk.next = Segment::of_entry(entry, ray);
@@ -36,7 +36,7 @@ impl<'a> CompactKdTraversal<'a> {
     }
 
     #[inline]
-    pub(super) fn new(tree: &CompactKdTree<'a>, ray: &PreparedRay) -> Self {
+    pub(super) fn new(tree: &CompactKdTree<'a, HEIGHT>, ray: &PreparedRay) -> Self {
         let (slopes, next) = Slopes::new(ray, &tree.lattice, 1.0);
         Self { nodes: tree.nodes, references: tree.references, slopes, next, waiting: Waiting::new() }
     }
@@ -103,7 +103,7 @@ impl<'a> CompactKdTraversal<'a> {
     }
 }
 
-impl<'a> Traversal for CompactKdTraversal<'a> {
+impl<'a, const HEIGHT: usize> Traversal for CompactKdTraversal<'a, HEIGHT> {
     type Leaf = Leaf<'a>;
 
     fn next_leaf(&mut self, ray: &PreparedRay, t_max: f32) -> Option<Leaf<'a>> {
