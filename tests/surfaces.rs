@@ -5,13 +5,14 @@ mod common;
 
 use std::cell::Cell;
 
-use common::{Random, adversarial_mesh, adversarial_ray, bits, plans};
+use common::{Random, adversarial_mesh, adversarial_ray, bits, meshes, plans};
 use hitscan::{
-    Arena, Hit, List, Mesh, Primitives, Ray, Scene,
-    accel::{self, Structure},
-    from_fn,
+    Arena, Grid, Hit, KdTree, List, Mesh, Octree, Primitives, Ray, Scene,
+    accel::{self, Plan, Structure},
+    bake, from_fn,
     geometry::Aabb,
     glam::{Vec2, Vec3},
+    grid, kdtree, octree,
     primitives::{self, Order, Renumbering, Reordered, Smooth},
 };
 
@@ -77,7 +78,7 @@ fn smooth_surfaces_mirror_nothing_into_themselves() {
 fn shapes_of_which_nothing_is_known_face_the_ray() {
     let bounds = Aabb::new(Vec3::splat(-1.0), Vec3::splat(1.0));
     let wall = from_fn(3, |_| bounds, |i, ray: &Ray| Some((i as f32 - ray.origin.z) / ray.direction.z));
-    assert_eq!(format!("{wall:?}"), "FromFn { len: 3, .. }");
+    assert_eq!((wall.len(), format!("{wall:?}").as_str()), (3, "FromFn { len: 3, .. }"));
     let scene = Scene::new(List::new(&wall).unwrap(), &wall).unwrap();
     let ray = Ray::new(Vec3::new(0.25, -0.5, 6.0), Vec3::new(0.0, 0.0, -2.0));
     let surface = scene.surface(&ray, &Hit { t: 2.5, primitive: 1 });
@@ -86,6 +87,22 @@ fn shapes_of_which_nothing_is_known_face_the_ray() {
     assert_eq!((surface.uv, surface.front), (Vec2::ZERO, true));
     // 2^-16 of the coordinates on the way, which are up to 6 + 5.
     assert_eq!(surface.error, 11.0 / 65_536.0);
+}
+
+#[test]
+fn structures_know_what_they_consist_of() {
+    let (vertices, triangles) = meshes::sheet(12);
+    let mesh = Mesh::new(&vertices, &triangles[..]).unwrap();
+    let words = bake::build(&mesh, &Plan::KdTree(kdtree::Options::balanced())).unwrap();
+    let tree = KdTree::open(&words).unwrap();
+    assert!((50..words.len()).contains(&tree.node_count()), "{}", tree.node_count());
+    let words = bake::build(&mesh, &Plan::Grid(grid::Options::balanced())).unwrap();
+    let grid = Grid::open(&words).unwrap();
+    assert!((288..words.len() * 4).contains(&grid.reference_count()), "{}", grid.reference_count());
+    assert!(grid.resolution().iter().all(|&cells| (1..300).contains(&cells)));
+    let words = bake::build(&mesh, &Plan::Octree(octree::Options::balanced())).unwrap();
+    let (steps, tests) = Octree::open(&words).unwrap().expected_work();
+    assert!(steps > 1.0 && tests > 1.0 && steps < 300.0 && tests < 288.0, "{steps} {tests}");
 }
 
 /// All that can be asked of primitives.
