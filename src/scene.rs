@@ -131,7 +131,7 @@ impl<A: Accelerator, P: Primitives> Scene<A, P> {
         if entries.is_empty() {
             return None;
         }
-        let prepared = ray.prepare();
+        let prepared = PreparedRay::here(ray);
         let ray = prepared.as_ref()?;
         let mut closest = Closest::new(ray);
         for entry in entries.iter() {

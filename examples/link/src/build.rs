@@ -95,10 +95,11 @@ fn one(structure: &Structure<'_>, arena: &mut Arena<'_>) {
         }
         Structure::KdTree(tree) => {
             black_box((tree.node_count(), tree.reference_count(), tree.depth(), tree.expected_work()));
+            black_box(tree.for_height::<20>().is_some());
             black_box((tree.is_ordered(), tree.order().last(), tree.ordered_words().last()));
         }
         Structure::CompactKdTree(tree) => {
-            black_box((tree.node_words(), tree.reference_count(), tree.depth()));
+            black_box((tree.node_words(), tree.reference_count(), tree.depth(), tree.for_height::<20>().is_some()));
         }
         Structure::Bvh(bvh) => {
             black_box((bvh.pair_count(), bvh.depth(), bvh.expected_work(), bvh.is_ordered()));
@@ -106,7 +107,7 @@ fn one(structure: &Structure<'_>, arena: &mut Arena<'_>) {
         }
         Structure::DualSplit(tree) => {
             black_box((tree.depth(), tree.is_ordered(), tree.order().last(), tree.ordered_words().last()));
-            black_box(tree.ordered(arena).is_ok());
+            black_box((tree.ordered(arena).is_ok(), tree.for_height::<20>().is_some()));
         }
         _ => {}
     }
