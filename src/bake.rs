@@ -4,7 +4,7 @@ mod lattice;
 
 use alloc::{vec, vec::Vec};
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 use crate::{
     accel::{Plan, Structure},
@@ -13,8 +13,8 @@ use crate::{
     error::BuildError,
     geometry::{Sphere, Triangle},
     instances::Instance,
-    primitives::{Indices, LatticeMesh, Mesh, Normals, Primitives, Triangles},
-    render::{Material, Numbers},
+    primitives::{Indices, LatticeMesh, Mesh, Normals, Primitives, TexCoords, Triangles},
+    render::{Material, Numbers, Texture, Textures},
 };
 
 pub use lattice::{OnLattice, lattice};
@@ -149,6 +149,14 @@ impl Baker {
         self.section(Kind::Normals, counted_halves(normals.len() as u32, numbers))
     }
 
+    /// The same with the texture coordinates of a mesh's vertices, in 4 bytes each: see [`TexCoords`].
+    ///
+    /// What is not finite is moved to the end of the range of those that are.
+    #[must_use]
+    pub fn tex_coords(self, coordinates: &[Vec2]) -> Self {
+        self.section(Kind::TexCoords, TexCoords::packed(coordinates).collect())
+    }
+
     /// The same with a [`Soup`](crate::primitives::Soup): at each place stands the triangle that `order` names, and every
     /// triangle at one at least, as [`gathered`] gives it. Only the corners are kept.
     #[must_use]
@@ -243,6 +251,12 @@ impl Baker {
             }
         };
         baker.section(Kind::MaterialNumbers, halves)
+    }
+
+    /// The same with the textures of materials, by their numbers; what several have in common is stored once.
+    #[must_use]
+    pub fn textures(self, textures: &[Option<Texture<'_>>]) -> Self {
+        self.section(Kind::Textures, Textures::packed(textures))
     }
 
     fn section(mut self, kind: Kind, words: Vec<u32>) -> Self {

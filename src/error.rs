@@ -10,6 +10,7 @@ use crate::{
     instances::InstanceError,
     lattice_scene::LatticeError,
     primitives::{MeshError, OrderError, SphereError},
+    render::TextureError,
     scene::Mismatch,
 };
 
@@ -110,4 +111,6 @@ any_of! {
     Instance(InstanceError),
     /// A transform.
     Transform(Singular),
+    /// A texture.
+    Texture(TextureError),
 }

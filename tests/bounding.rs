@@ -59,6 +59,37 @@ fn checked(kind: Bounding, points: &[Vec3]) -> BoundingVolume {
 }
 
 #[test]
+fn boxes_contain_what_lies_between_all_their_faces() {
+    let half = Vec3::new(1.0, 2.0, 0.5);
+    let center = Vec3::new(3.0, -4.0, 5.0);
+    let aabb = Aabb::new(center - half, center + half);
+    let obb = Obb { axes: Mat3::from_rotation_y(0.5) * Mat3::from_rotation_x(0.3), center, half_size: half };
+    assert!(aabb.is_valid() && obb.is_valid());
+    assert!((obb.half_area() - 4.0 * (2.0 + 1.0 + 0.5)).abs() < 1.0e-5 && obb.half_area() == aabb.half_area());
+    for (axis, side) in (0..6).map(|i| (i / 2, [-1.0, 1.0][i % 2])) {
+        for (part, inside) in [(0.999, true), (1.001, false)] {
+            // Not in the middle of the face.
+            let mut at = half * 0.25;
+            at[axis] = half[axis] * part * side;
+            assert_eq!(aabb.contains(center + at), inside, "{axis} {side}");
+            assert_eq!(obb.contains(center + obb.axes * at), inside, "{axis} {side}");
+        }
+        let mut wrong = obb;
+        wrong.half_size[axis] = if side > 0.0 { f32::INFINITY } else { -0.1 };
+        assert!(!wrong.is_valid(), "{wrong:?}");
+        let mut wrong = obb;
+        wrong.center[axis] = f32::MAX * side;
+        assert!(!wrong.is_valid(), "{wrong:?}");
+        let mut wrong = obb;
+        *wrong.axes.col_mut(axis) *= 1.0 + 1.0e-3 * side;
+        assert!(!wrong.is_valid(), "{wrong:?}");
+        let mut wrong = obb;
+        *wrong.axes.col_mut(axis) = (obb.axes.col(axis) + obb.axes.col((axis + 1) % 3) * 0.01).normalize();
+        assert!(!wrong.is_valid(), "{wrong:?}");
+    }
+}
+
+#[test]
 fn volumes_contain_their_points_as_real_numbers() {
     let mut random = Random::new(21);
     for round in 0..6000 {

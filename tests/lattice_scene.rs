@@ -16,6 +16,7 @@ use hitscan::{
     kdtree,
     lattice_scene::LatticeError,
     primitives::{Order, Renumbering, Reordered, Sides},
+    render::{Camera, Caster, Color, Light, Renderer, Tile},
     scene::Mismatch,
 };
 
@@ -193,6 +194,50 @@ fn closed_meshes_do_not_leak() {
         assert!(hit.is_some_and(|hit| hit.t > 0.0) && scene.any_hit(&ray), "{ray:?} {hit:?}");
         // It leaves the surface once more often than it enters it.
         assert!(scene.closest_hit(&Ray { direction: -ray.direction, ..ray }).is_some(), "{ray:?}");
+    }
+}
+
+fn picture<S: Caster>(scene: &S, camera: Camera, side: u32) -> Vec<[u8; 3]> {
+    let lights = [Light::directional(Vec3::new(-1.0, -2.0, -0.5), Vec3::ONE)];
+    let renderer = Renderer::new(scene, camera, side, side).with_lights(&lights).with_bounces(1);
+    let mut pixels = vec![[0; 3]; (side * side) as usize];
+    renderer.fill(Tile { x: 0, y: 0, width: side, height: side }, &mut pixels).unwrap();
+    let alone = |(x, y)| <[u8; 3]>::from_linear(renderer.pixel(x, y));
+    let whole = Tile { x: 0, y: 0, width: side, height: side };
+    assert!(whole.pixels().map(alone).eq(pixels.iter().copied()), "tiles differ from their pixels");
+    pixels
+}
+
+#[test]
+fn pictures_are_those_of_the_list_and_nearly_those_of_floats() {
+    let (vertices, triangles) = ball(6);
+    // A plate below, on which the ball casts its shadow.
+    let (mut vertices, mut triangles) = (vertices, triangles);
+    let first = vertices.len() as u32;
+    vertices.extend([(-2.0, -2.0), (-2.0, 2.0), (2.0, 2.0), (2.0, -2.0)].map(|(x, z)| Vec3::new(x, -1.3, z)));
+    triangles.extend([[first, first + 1, first + 2], [first, first + 2, first + 3]]);
+    let mesh = Mesh::new(&vertices, &triangles[..]).unwrap();
+    let snapped = bake::lattice(&mesh);
+    let mesh = snapped.mesh(&mesh).unwrap();
+    let list = LatticeScene::new(List::new(&mesh).unwrap(), &mesh).unwrap();
+    let words = bake::build(&mesh, &Plan::DualSplit(dualsplit::Options::fast())).unwrap();
+    let tree = LatticeScene::new(DualSplit::open(&words).unwrap(), &mesh).unwrap();
+    let floats = Scene::new(DualSplit::open(&words).unwrap(), &mesh).unwrap();
+    for (from, side) in
+        [(Vec3::new(1.0, 0.8, 2.0), 48), (Vec3::new(0.1, 3.0, -0.2), 32), (Vec3::new(-5.0, 0.3, 0.0), 32)]
+    {
+        // All of it, and a part in whose tiles there is something everywhere.
+        for camera in
+            [Camera::framing(&floats.bounds(), from, Vec3::Y), Camera::pinhole(from * 1.5, Vec3::ZERO, Vec3::Y, 0.3)]
+        {
+            let shown = picture(&tree, camera, side);
+            assert_eq!(shown, picture(&list, camera, side));
+            // Shadows of surfaces on themselves would be dark dots.
+            let exact = picture(&floats, camera, side);
+            let differ = |(a, b): (&[u8; 3], &[u8; 3])| a.iter().zip(b).any(|(a, b)| a.abs_diff(*b) > 12);
+            let off = shown.iter().zip(&exact).filter(|&pair| differ(pair)).count();
+            assert!(off * 50 < shown.len(), "{off} of {} pixels", shown.len());
+        }
     }
 }
 

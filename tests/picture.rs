@@ -53,6 +53,20 @@ fn whole<C: hitscan::render::Color + Default>(renderer: &Renderer<'_, Scene<KdTr
     pixels
 }
 
+#[test]
+fn samples_are_the_pixels_of_a_larger_picture() {
+    with_renderer(12, 8, |small| {
+        with_renderer(36, 24, |large| {
+            let fine = small.with_samples(3);
+            for (x, y) in (0..96).map(|i| (i % 12, i / 12)) {
+                let within = (0..9).map(|i| large.pixel(3 * x + i % 3, 3 * y + i / 3));
+                let mean = within.sum::<Vec3>() / 9.0;
+                assert!((fine.pixel(x, y) - mean).abs().max_element() < 1.0e-4, "{x} {y}");
+            }
+        });
+    });
+}
+
 /// FNV-1a.
 fn hash(pixels: &[[u8; 3]]) -> u32 {
     pixels.iter().flatten().fold(0x811c_9dc5, |sum: u32, &byte| (sum ^ u32::from(byte)).wrapping_mul(0x0100_0193))

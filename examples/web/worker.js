@@ -90,9 +90,9 @@ function work() {
         more = drawn > 0;
         if (more) {
             job.drawn += drawn;
-            const x = engine.tile_x();
-            const y = engine.tile_y();
-            tiles.set(y * width + x, { x, y, width: engine.tile_width(), height: engine.tile_height() });
+            const tile = { x: engine.tile_x(), y: engine.tile_y(), width: engine.tile_width(), height: engine.tile_height() };
+            // Tiles of another pass may begin at the same place.
+            tiles.set(`${tile.x} ${tile.y} ${tile.width} ${tile.height}`, tile);
         }
         const before = now;
         now = performance.now();

@@ -6,12 +6,14 @@ use hitscan::{
     accel::{Plan, Structure},
     asset::Asset,
     bake::{self, Baker},
-    glam::Vec3,
+    glam::{Vec2, Vec3},
+    primitives::{Mapped, Smooth},
     query::Progress,
+    render::{Texels, Texture, Textures},
 };
 use libfuzzer_sys::fuzz_target;
 
-/// A small asset with a structure of this kind, for the fuzzer to damage.
+/// A small asset with a structure of this kind, normals and textures, for the fuzzer to damage.
 fn seed(kind: u8) -> Vec<u32> {
     let vertices: Vec<Vec3> = (0..24).map(|i| Vec3::new((i * 7 % 5) as f32, (i * 3 % 4) as f32, i as f32)).collect();
     let triangles: Vec<[u16; 3]> = (0..8).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
@@ -19,7 +21,17 @@ fn seed(kind: u8) -> Vec<u32> {
     let plans: Vec<Plan> = Plan::all().filter(|plan| plan.kind().is_some()).collect();
     let plan = plans[usize::from(kind) % plans.len()];
     let words = bake::build(&mesh, &plan).unwrap();
-    Baker::new().mesh(&mesh).structure(Structure::open(plan.kind().unwrap(), &words).unwrap()).finish()
+    let structure = Structure::open(plan.kind().unwrap(), &words).unwrap();
+    let (normals, coordinates) = ([Vec3::Z; 24], [Vec2::ONE; 24]);
+    let palette = [0x1234; 16];
+    let textures = [
+        Texels::Rgb565(&palette),
+        Texels::Palette8 { palette: &palette, texels: &[3; 16] },
+        Texels::Palette4 { palette: &palette, texels: &[7; 8] },
+    ];
+    let textures = textures.map(|texels| Texture::new(2, 8, texels).ok());
+    let baker = Baker::new().mesh(&mesh).structure(structure);
+    baker.normals(&normals).tex_coords(&coordinates).textures(&textures).finish()
 }
 
 fn checksum(words: &[u32]) -> u32 {
@@ -46,6 +58,14 @@ fuzz_target!(|input: (u8, Vec<(u16, u32)>)| {
         words[4] = checksum(&words);
     }
     let Ok(asset) = Asset::from_words(&words) else { return };
+    let textures: Result<Textures, _> = asset.read();
+    for texture in (0..4).filter_map(|material| textures.as_ref().ok()?.get(material)) {
+        assert!([0.3, 7.0, f32::NAN].into_iter().all(|u| texture.color(Vec2::new(u, -1.0e-9)).is_finite()));
+    }
+    if let Ok(scene) = asset.scene::<Structure, Mapped<Smooth>>() {
+        let ray = Ray::new(Vec3::NEG_ONE, Vec3::ONE);
+        let _ = scene.closest_hit(&ray).map(|hit| scene.surface(&ray, &hit));
+    }
     let Ok(scene): Result<Scene<Structure, Mesh>, _> = asset.scene() else { return };
     // Whatever a structure counts, there is no more of it than bits.
     let most = scene.accelerator().as_words().len() as u32 * 32;

@@ -8,7 +8,7 @@ use libfuzzer_sys::fuzz_target;
 #[allow(dead_code)]
 #[path = "../../cli/src/input.rs"]
 mod input;
-#[allow(dead_code)]
+#[allow(dead_code, unused_imports)]
 #[path = "../../cli/src/model/mod.rs"]
 mod model;
 
@@ -31,6 +31,9 @@ fuzz_target!(|bytes: &[u8]| {
             assert!(model.triangles.iter().flatten().all(|&vertex| (vertex as usize) < model.vertices.len()));
             assert!(model.material_ids.is_empty() || model.material_ids.len() == model.triangles.len());
             assert!(model.material_ids.iter().all(|&id| usize::from(id) < model.materials.len()));
+            let has_image = |id: u16| model.materials[usize::from(id)].image.is_some();
+            let mapped = |triangle: usize| model.mapping.of(triangle).is_some();
+            assert!((0..model.material_ids.len()).all(|at| !has_image(model.material_ids[at]) || mapped(at)));
         }
         Err(error) => assert!(!error.to_string().contains('\n'), "{error}"),
     }

@@ -49,7 +49,7 @@ impl fmt::Display for Malformed {
             Reason::References => "a leaf's references are not where they must be",
             Reason::Primitive => "a leaf names a primitive that does not exist, or once too often",
         };
-        write!(f, "not a {}: at word {} {what}", self.structure, self.word)
+        write!(f, "no {}: at word {} {what}", self.structure, self.word)
     }
 }
 

@@ -15,6 +15,8 @@ pub enum Kind {
     WideIndices,
     /// How many vertices, then a normal of 16 bits each.
     Normals,
+    /// How many vertices, the least texture coordinates, the steps between them, then two numbers of 16 bits each.
+    TexCoords,
     /// How many triangles, the place of each, then facets: nine `f32` and a number each.
     Soup,
     /// Spheres: centre and radius, four `f32` each.
@@ -41,17 +43,20 @@ pub enum Kind {
     Materials,
     /// How many primitives, then a material number of 16 bits each.
     MaterialNumbers,
+    /// How many materials, where each one's texture begins, then sizes, palettes and texels.
+    Textures,
     /// Something that this version does not know.
     Unknown(u32),
 }
 
 impl Kind {
-    const KNOWN: [Self; 18] = [
+    const KNOWN: [Self; 20] = [
         Self::Vertices,
         Self::LatticeVertices,
         Self::NarrowIndices,
         Self::WideIndices,
         Self::Normals,
+        Self::TexCoords,
         Self::Soup,
         Self::Spheres,
         Self::KdTree,
@@ -65,6 +70,7 @@ impl Kind {
         Self::Part,
         Self::Materials,
         Self::MaterialNumbers,
+        Self::Textures,
     ];
 
     /// Four letters in the order of the bytes.
@@ -75,6 +81,7 @@ impl Kind {
             Self::NarrowIndices => u32::from_le_bytes(*b"idx2"),
             Self::WideIndices => u32::from_le_bytes(*b"idx4"),
             Self::Normals => u32::from_le_bytes(*b"nrml"),
+            Self::TexCoords => u32::from_le_bytes(*b"txuv"),
             Self::Soup => u32::from_le_bytes(*b"soup"),
             Self::Spheres => u32::from_le_bytes(*b"sphr"),
             Self::KdTree => u32::from_le_bytes(*b"kdtr"),
@@ -88,6 +95,7 @@ impl Kind {
             Self::Part => u32::from_le_bytes(*b"part"),
             Self::Materials => u32::from_le_bytes(*b"matl"),
             Self::MaterialNumbers => u32::from_le_bytes(*b"matn"),
+            Self::Textures => u32::from_le_bytes(*b"txtr"),
             Self::Unknown(code) => code,
         }
     }
@@ -123,6 +131,7 @@ impl fmt::Display for Kind {
             Self::NarrowIndices => f.write_str("16-bit indices"),
             Self::WideIndices => f.write_str("32-bit indices"),
             Self::Normals => f.write_str("normals"),
+            Self::TexCoords => f.write_str("texture coordinates"),
             Self::Soup => f.write_str("triangle soup"),
             Self::Spheres => f.write_str("spheres"),
             Self::KdTree => f.write_str("kD-tree"),
@@ -136,6 +145,7 @@ impl fmt::Display for Kind {
             Self::Part => f.write_str("part"),
             Self::Materials => f.write_str("materials"),
             Self::MaterialNumbers => f.write_str("material numbers"),
+            Self::Textures => f.write_str("textures"),
             Self::Unknown(code) => write!(f, "unknown ({code:#010x})"),
         }
     }

@@ -103,6 +103,20 @@ impl Bundle {
         Some(Self { slabs: [slab(Axis::X)?, slab(Axis::Y)?, slab(Axis::Z)?], enter })
     }
 
+    /// All rays that are as these but begin up to `by` away along each axis.
+    pub(crate) fn padded(&self, by: f32) -> Self {
+        let pad = |way: &Way| {
+            let [first, last] = way.origins;
+            Way { origins: [first - by, last + by], ..*way }
+        };
+        let slabs = self.slabs.each_ref().map(|slab| match slab {
+            Slab::Ascending(way) => Slab::Ascending(pad(way)),
+            Slab::Descending(way) => Slab::Descending(pad(way)),
+            Slab::Both(ways) => Slab::Both(ways.each_ref().map(pad)),
+        });
+        Self { slabs, ..*self }
+    }
+
     /// A parameter before which none of the rays enters the box; `None` if none of them meets it.
     #[must_use]
     pub fn entry(&self, bounds: &Aabb) -> Option<f32> {

@@ -15,7 +15,8 @@ pub struct Surface {
     pub geometric_normal: Vec3,
     /// The unit normal to shade with, on the front; the geometric one unless the shape has better.
     pub shading_normal: Vec3,
-    /// Texture coordinates; on a triangle the weights of its second and third corner.
+    /// Texture coordinates, if the shape has some ([`Mapped`](super::Mapped)); otherwise, on a triangle, the weights of its
+    /// second and third corner.
     pub uv: Vec2,
     /// Whether the ray came from the front.
     pub front: bool,

@@ -1,12 +1,13 @@
 use super::Material;
 use crate::{
-    accel::{Accelerator, Entries},
+    accel::{Accelerator, Entries, LatticeAccelerator},
     geometry::{Aabb, Bundle, Ray},
-    primitives::{Hit, Primitives, Surface},
+    lattice_scene::LatticeScene,
+    primitives::{Hit, LatticeMesh, LatticeTriangles, Primitives, Surface},
     scene::Scene,
 };
 
-/// What a renderer asks: every [`Scene`] answers.
+/// What a renderer asks: every [`Scene`] answers, and every [`LatticeScene`].
 ///
 /// Wrap one to count or time rays. `depth` is how often light was reflected on the way to the camera: 0 for the camera's
 /// own rays and for shadows at what they hit.
@@ -36,8 +37,8 @@ pub trait Caster {
     fn surface(&self, ray: &Ray, hit: &Hit) -> Surface;
 
     /// The material of what was hit, if the scene knows it: worlds of instances do, for whose primitives, all numbered
-    /// through, nobody has a list. Otherwise the renderer's materials count.
-    fn material(&self, _hit: &Hit) -> Option<Material> {
+    /// through, nobody has a list, and so do [textured](super::Textured) scenes. Otherwise the renderer's materials count.
+    fn material(&self, _hit: &Hit, _surface: &Surface) -> Option<Material> {
         None
     }
 
@@ -73,4 +74,44 @@ impl<A: Accelerator, P: Primitives> Caster for Scene<A, P> {
     fn bounds(&self) -> Aabb {
         Self::bounds(self)
     }
+}
+
+/// Rays in whole numbers, surfaces and light in floating point.
+impl<A: LatticeAccelerator, P: LatticeTriangles> Caster for LatticeScene<A, P> {
+    fn closest_hit(&self, ray: &Ray, _depth: u32) -> Option<Hit> {
+        Self::closest_hit(self, ray)
+    }
+
+    /// Tells whether there is anything: rays in whole numbers begin at the root all the same.
+    ///
+    /// What a ray hits lies within its rounding of the line that was meant, so that one beside it, of the wider bundle, passes
+    /// through. Of origins so far away that the width is lost in them, exits are later by more than that.
+    fn enter(&self, bundle: &Bundle) -> Entries {
+        self.accelerator().enter(&bundle.padded(rounding(self)))
+    }
+
+    fn closest_hit_from(&self, entries: &Entries, ray: &Ray) -> Option<Hit> {
+        if entries.is_empty() { None } else { Self::closest_hit(self, ray) }
+    }
+
+    fn any_hit(&self, ray: &Ray, _depth: u32) -> bool {
+        Self::any_hit(self, ray)
+    }
+
+    /// With a point that is as far off as rays are, rounded to the lattice, so that what leaves a surface does not meet it.
+    fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
+        let surface = self.triangles().surface(ray, hit);
+        Surface { error: surface.error + rounding(self), ..surface }
+    }
+
+    fn bounds(&self) -> Aabb {
+        self.accelerator().bounds()
+    }
+}
+
+/// How far off rays in whole numbers may be.
+fn rounding<A: LatticeAccelerator, P: LatticeTriangles>(scene: &LatticeScene<A, P>) -> f32 {
+    /// Steps by which a line, and the depth at which it crosses a triangle, may be off, and half as many again.
+    const STEPS: f32 = 12.0;
+    scene.triangles().mesh().frame().size().max_element() * (STEPS / LatticeMesh::LAST as f32)
 }

@@ -33,8 +33,8 @@ impl Levels {
 const BITS_1: &[u16] = &linear::<2>();
 const BITS_2: &[u16] = &linear::<4>();
 const BITS_4: &[u16] = &linear::<16>();
-const BITS_5: &[u16] = &linear::<32>();
-const BITS_6: &[u16] = &linear::<64>();
+pub(super) const BITS_5: &[u16] = &linear::<32>();
+pub(super) const BITS_6: &[u16] = &linear::<64>();
 const BITS_8: &[u16] = &linear::<256>();
 
 /// The linear light of `N` levels.

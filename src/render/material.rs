@@ -81,13 +81,18 @@ impl<'a> Materials<'a> {
     /// The material of a primitive.
     #[must_use]
     pub fn of(&self, primitive: u32) -> Material {
+        self.number(primitive).and_then(|number| self.palette.get(number as usize)).copied().unwrap_or_default()
+    }
+
+    /// The number of the material of a primitive.
+    #[must_use]
+    pub fn number(&self, primitive: u32) -> Option<u32> {
         let index = primitive as usize;
-        let number = match self.numbers {
+        match self.numbers {
             Numbers::First => Some(0),
-            Numbers::Narrow(numbers) => numbers.get(index).map(|&n| usize::from(n)),
-            Numbers::Wide(numbers) => numbers.get(index).map(|&n| usize::from(n)),
-        };
-        number.and_then(|n| self.palette.get(n)).copied().unwrap_or_default()
+            Numbers::Narrow(numbers) => numbers.get(index).map(|&number| number.into()),
+            Numbers::Wide(numbers) => numbers.get(index).map(|&number| number.into()),
+        }
     }
 }
 

@@ -142,6 +142,12 @@ impl<'a, S: Caster + ?Sized> Renderer<'a, S> {
         self.height
     }
 
+    /// Rays along a side of a pixel.
+    #[must_use]
+    pub const fn samples(&self) -> u32 {
+        self.samples
+    }
+
     /// The picture in tiles of at most this size.
     #[must_use]
     pub fn tiles(&self, width: u32, height: u32) -> Tiles {
@@ -251,7 +257,7 @@ impl<'a, S: Caster + ?Sized> Renderer<'a, S> {
                 return light + self.sky(ray.direction) * share;
             };
             let surface = self.scene.surface(&ray, &hit);
-            let material = self.scene.material(&hit).unwrap_or_else(|| self.materials.of(hit.primitive));
+            let material = self.scene.material(&hit, &surface).unwrap_or_else(|| self.materials.of(hit.primitive));
             let direction = unit(ray.direction);
             let mirrored = if self.terms.reflections && depth < self.bounces { material.reflectivity } else { 0.0 };
             let own = self.phong(&surface, &material, -direction, (depth, patch));

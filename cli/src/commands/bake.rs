@@ -17,7 +17,7 @@ use crate::{
     chip::{self, Chip},
     failure::{self, Failure},
     output,
-    scene::{Built, Choice, Named, Palette, Preset, Shape, Source, StructureArgs, broken, normals_by_place},
+    scene::{Built, Choice, Named, Palette, Preset, Shape, Skin, Source, StructureArgs, broken, normals_by_place},
     units::{count, parse_bytes},
     world::{self, write_words},
 };
@@ -52,6 +52,11 @@ pub struct Bake {
     /// Store the vertices' normals, in 2 bytes each: triangles are shaded as if they were curved, but for sharp edges
     #[arg(long, conflicts_with = "lattice")]
     normals: bool,
+    /// Store the materials' textures, of at most N pixels along a side (256 if not given), in at most 2 bytes a pixel and 4
+    /// a vertex; where a texture has seams, vertices are there several times
+    #[arg(long, value_name = "N", num_args = 0..=1, require_equals = true, default_missing_value = "256",
+          value_parser = clap::value_parser!(u16).range(1..))]
+    textures: Option<u16>,
     /// The most bytes that the asset may have, such as 64K; the structure is made to fit
     #[arg(long, value_name = "BYTES", value_parser = parse_bytes)]
     fit: Option<usize>,
@@ -63,19 +68,20 @@ impl Bake {
         if self.model.extension().is_some_and(|extension| extension == "toml") {
             return self.world();
         }
-        let source = Source::load(&self.model)?;
+        let source = Source::load_with(&self.model, self.textures)?;
         let Source::Model(geometry) = &source else {
             let what = format!("{}: is an asset already", self.model.display());
             return Err(Failure::new(what, "name the mesh it was made from"));
         };
         let model = source.view(&self.model)?.mesh;
         let normals = self.normals.then(|| normals_by_place(&model));
-        let normals = normals.as_deref();
         let snapped = self.lattice.then(|| bake::lattice(&model));
         let snapped = snapped.as_ref();
         let shapes = Triangles::of(&model, snapped)?;
         let unmoved: Vec<u32> = (0..model.len()).collect();
-        let bare = bake(&shapes, normals, &geometry.palette, None, self.keep_numbers.then_some(&unmoved)).len() * 4;
+        let extras = Extras { normals: normals.as_deref(), skin: geometry.skin.as_deref() };
+        let numbers = self.keep_numbers.then_some(&unmoved);
+        let bare = bake(&shapes, extras, &geometry.palette, None, numbers).len() * 4;
         let most = self.fit.map(|most| room(most, bare)).transpose()?;
         let (built, order) = match self.target {
             Some(chip) => shapes.choose(chip, self.structure.unwrap_or_default(), most),
@@ -90,7 +96,7 @@ impl Bake {
         let structure = built.structure(&model)?;
         let keeps = self.keep_numbers && order != unmoved;
         let palette = if keeps { geometry.palette.clone() } else { geometry.palette.reordered(&order) };
-        let words = bake(&shapes, normals, &palette, Some(structure), keeps.then_some(&order));
+        let words = bake(&shapes, extras, &palette, Some(structure), keeps.then_some(&order));
         if let Some(most) = self.fit.filter(|most| words.len() * 4 > *most) {
             let what = format!("--fit {most}: with this structure ({}) it takes {} bytes", built.name, words.len() * 4);
             return Err(Failure::new(what, "allow more bytes, or choose another structure, such as kdtree"));
@@ -123,6 +129,7 @@ impl Bake {
             ("--target", self.target.is_some()),
             ("--keep-numbers", self.keep_numbers),
             ("--lattice", self.lattice),
+            ("--textures", self.textures.is_some()),
             ("--fit", self.fit.is_some()),
         ];
         if let Some((option, _)) = unfit.into_iter().find(|(_, given)| *given) {
@@ -188,9 +195,16 @@ impl<'a> Triangles<'a> {
     }
 }
 
+/// What there is of vertices and materials beyond the usual.
+#[derive(Clone, Copy)]
+struct Extras<'a> {
+    normals: Option<&'a [Vec3]>,
+    skin: Option<&'a Skin>,
+}
+
 fn bake(
     shapes: &Triangles<'_>,
-    normals: Option<&[Vec3]>,
+    Extras { normals, skin }: Extras<'_>,
     palette: &Palette,
     structure: Option<Structure<'_>>,
     numbers: Option<&Vec<u32>>,
@@ -211,6 +225,9 @@ fn bake(
     if !palette.materials.is_empty() {
         baker = baker.materials(&palette.materials, palette.as_numbers());
     }
+    if let Some(skin) = skin {
+        baker = skin.bake(baker);
+    }
     baker.finish()
 }
 
@@ -222,7 +239,7 @@ fn table(
     triangles: usize,
     output: &Path,
 ) -> Result<String, Failure> {
-    let (mut geometry, mut tree, mut materials) = (0, 0, 0);
+    let (mut geometry, mut tree, mut materials, mut textures) = (0, 0, 0, 0);
     let asset = Asset::from_words(words).map_err(|error| Failure::new(error, "report this as a bug"))?;
     for section in asset.sections() {
         let bytes = section.words.len() * 4;
@@ -231,6 +248,7 @@ fn table(
                 geometry += bytes;
             }
             Kind::Materials | Kind::MaterialNumbers => materials += bytes,
+            Kind::Textures | Kind::TexCoords => textures += bytes,
             _ => tree += bytes,
         }
     }
@@ -239,7 +257,8 @@ fn table(
         ("geometry", geometry),
         ("structure", tree),
         ("materials", materials),
-        ("header and padding", total - geometry - tree - materials),
+        ("textures", textures),
+        ("header and padding", total - geometry - tree - materials - textures),
         ("total", total),
     ];
     let mut text = format!(
@@ -250,7 +269,7 @@ fn table(
         "bytes",
         "per triangle"
     );
-    for (what, bytes) in rows {
+    for (what, bytes) in rows.into_iter().filter(|(what, bytes)| *bytes > 0 || *what != "textures") {
         // Writing to a string cannot fail.
         let _ = writeln!(text, "{what:<20}{:>14}{:>14.2}", count(bytes), bytes as f64 / triangles as f64);
     }

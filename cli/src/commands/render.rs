@@ -57,9 +57,12 @@ struct Picture {
 
 impl Render {
     pub fn run(&self) -> Result<ExitCode, Failure> {
+        /// The most pixels along a side of a texture.
+        const TEXTURES: u16 = 2048;
         output::check(&self.output)?;
         let begun = Instant::now();
-        let source = self.model.as_deref().map(|path| Source::load(path).map(|source| (source, path))).transpose()?;
+        let load = |path| Source::load_with(path, Some(TEXTURES)).map(|source| (source, path));
+        let source = self.model.as_deref().map(load).transpose()?;
         let source = source.as_ref().map(|(source, path)| (source, *path));
         let (width, height) = self.settings.size();
         let (mut text, picture) = match self.tiles.zip(self.of) {

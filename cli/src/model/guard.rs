@@ -11,11 +11,16 @@ thread_local! {
 }
 
 /// Runs `read`; should it panic, the file is [`Fault::Incomprehensible`].
+pub(super) fn guarded<T>(read: impl FnOnce() -> Result<T, LoadError> + UnwindSafe) -> Result<T, LoadError> {
+    caught(read).unwrap_or_else(|| Err(Fault::Incomprehensible.into()))
+}
+
+/// What `read` returns, or nothing should it panic.
 ///
 /// The glTF reader unwraps, indexes and subtracts in places that only a damaged file reaches. A bad
 /// file is an everyday event and must end in one line, so the panic is caught, and the hook that
 /// would print it is silenced: on this thread and during `read` only, so that our own bugs stay loud.
-pub(super) fn guarded<T>(read: impl FnOnce() -> Result<T, LoadError> + UnwindSafe) -> Result<T, LoadError> {
+pub fn caught<T>(read: impl FnOnce() -> T + UnwindSafe) -> Option<T> {
     static QUIET_HOOK: Once = Once::new();
     QUIET_HOOK.call_once(|| {
         let loud = panic::take_hook();
@@ -28,7 +33,7 @@ pub(super) fn guarded<T>(read: impl FnOnce() -> Result<T, LoadError> + UnwindSaf
     GUARDED.set(true);
     let outcome = panic::catch_unwind(read);
     GUARDED.set(false);
-    outcome.unwrap_or_else(|_| Err(Fault::Incomprehensible.into()))
+    outcome.ok()
 }
 
 #[cfg(test)]

@@ -1,5 +1,7 @@
 //! [`Material`]: how a surface answers light, in the terms of Phong's model.
 
+use super::Image;
+
 /// A surface's answer to light; colours are linear RGB from 0 to 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {
@@ -13,11 +15,20 @@ pub struct Material {
     pub shininess: f32,
     /// Share of the light that is reflected as by a mirror, 0 to 1.
     pub reflectivity: f32,
+    /// The picture by which the colour of scattered light is multiplied.
+    pub image: Option<Image>,
 }
 
 impl Material {
     /// Matt light grey, for faces of which the file does not say more.
     pub fn neutral(name: impl Into<String>) -> Self {
-        Material { name: name.into(), diffuse: [0.8; 3], specular: [0.0; 3], shininess: 1.0, reflectivity: 0.0 }
+        Material {
+            name: name.into(),
+            diffuse: [0.8; 3],
+            specular: [0.0; 3],
+            shininess: 1.0,
+            reflectivity: 0.0,
+            image: None,
+        }
     }
 }

@@ -6,6 +6,8 @@
 mod error;
 mod gltf;
 mod guard;
+mod image;
+mod mapping;
 mod material;
 mod mtl;
 mod obj;
@@ -18,6 +20,9 @@ use std::ops::Range;
 use std::path::Path;
 
 pub use error::{Fault, LoadError};
+pub use guard::caught;
+pub use image::{Contents, Image};
+pub use mapping::Mapping;
 pub use material::Material;
 
 /// The file name endings [`Model::load`] knows, for its errors and the help text.
@@ -34,6 +39,8 @@ pub struct Model {
     pub materials: Vec<Material>,
     /// An index into `materials` per triangle, or empty when there is one material.
     pub material_ids: Vec<u16>,
+    /// Where in the pictures of materials the triangles lie; empty if no material has one.
+    pub mapping: Mapping,
     /// Which part of the file each run of triangles is, and where; none if the format places nothing.
     pub placements: Vec<Placement>,
     /// What was wrong in the file without spoiling its geometry, one line each.
@@ -71,10 +78,8 @@ impl Model {
 
     /// Cuts a polygon into the fan around its first corner; points and lines leave no triangle.
     fn push_polygon(&mut self, corners: &[u32], material: u16) {
-        if let [apex, rim @ ..] = corners {
-            self.triangles.extend(rim.windows(2).map(|edge| [*apex, edge[0], edge[1]]));
-            self.material_ids.resize(self.triangles.len(), material);
-        }
+        self.triangles.extend(fan(corners));
+        self.material_ids.resize(self.triangles.len(), material);
     }
 
     fn push_material(&mut self, material: Material) -> Result<u16, Fault> {
@@ -93,11 +98,18 @@ impl Model {
         if self.materials.is_empty() {
             self.materials.push(Material::neutral(""));
         }
+        mapping::settle(&mut self)?;
         if self.materials.len() == 1 {
             self.material_ids = Vec::new();
         }
         Ok(self)
     }
+}
+
+/// The triangles around the first corner of a polygon.
+fn fan(corners: &[u32]) -> impl Iterator<Item = [u32; 3]> {
+    let edges = corners.get(1..).unwrap_or_default().windows(2);
+    edges.map(|edge| [corners[0], edge[0], edge[1]])
 }
 
 fn read(path: &Path) -> Result<Model, LoadError> {
@@ -129,11 +141,14 @@ fn read(path: &Path) -> Result<Model, LoadError> {
     Ok(read(&bytes, path.parent().unwrap_or(Path::new("")))?.finish()?)
 }
 
-/// Reads a file that a mesh file names. Devices are left alone: a mesh must not make us read without
-/// end.
+/// Reads a file that a mesh file names.
 fn read_companion(folder: &Path, name: &str) -> io::Result<Vec<u8>> {
-    let path = folder.join(name);
-    match fs::metadata(&path)?.is_file() {
+    read_file(&folder.join(name))
+}
+
+/// Reads a file, but leaves devices alone: a mesh must not make us read without end.
+fn read_file(path: &Path) -> io::Result<Vec<u8>> {
+    match fs::metadata(path)?.is_file() {
         true => fs::read(path),
         false => Err(io::Error::other("not a regular file")),
     }

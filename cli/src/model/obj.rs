@@ -1,4 +1,4 @@
-//! Wavefront OBJ: `v`, `f`, `usemtl` and `mtllib`; all other statements are passed over.
+//! Wavefront OBJ: `v`, `vt`, `f`, `usemtl` and `mtllib`; all other statements are passed over.
 //!
 //! Read here and not by a library, because the ones at hand drop unused vertices, divide by a
 //! fourth coordinate and report no line.
@@ -8,7 +8,7 @@ use std::path::Path;
 use std::str::SplitAsciiWhitespace;
 
 use super::error::excerpt;
-use super::{Fault, LoadError, Material, Model, mtl, read_companion};
+use super::{Fault, LoadError, Mapping, Material, Model, mtl, read_companion};
 use crate::input;
 
 /// What some editors put before the first statement.
@@ -30,7 +30,7 @@ pub(super) fn read(bytes: &[u8], folder: &Path) -> Result<Model, LoadError> {
     let mut library = HashMap::new();
     let mut ids = HashMap::new();
     let mut current = None;
-    let mut corners = Vec::new();
+    let (mut corners, mut places) = (Vec::new(), Vec::new());
     for (number, line) in (1..).zip(text.lines()) {
         let mut words = line.split_ascii_whitespace();
         let keyword = words.next();
@@ -38,15 +38,22 @@ pub(super) fn read(bytes: &[u8], folder: &Path) -> Result<Model, LoadError> {
             Some("v") => model.push_vertex(
                 position(words).ok_or_else(|| Fault::Syntax { found: line.to_owned(), expected: "three numbers" })?,
             ),
+            Some("vt") => {
+                model.mapping.coordinates.push(coordinates(words));
+                Ok(())
+            }
             Some("f") => {
                 corners.clear();
+                places.clear();
                 for word in words.take_while(|word| !word.starts_with('#')) {
                     corners.push(corner(word, &model, vertices)?);
+                    places.push(place(word, &model.mapping));
                 }
                 let material = match current {
                     Some(id) => id,
                     None => *current.insert(material_id("", &mut ids, &mut model)?),
                 };
+                model.mapping.push_polygon(model.triangles.len(), &places);
                 model.push_polygon(&corners, material);
                 Ok(())
             }
@@ -95,6 +102,20 @@ fn corner(word: &str, model: &Model, vertices: usize) -> Result<u32, Fault> {
     }
 }
 
+/// `u v`, from the lower left corner of a picture: turned over, as pictures begin at the upper one.
+fn coordinates(mut words: SplitAsciiWhitespace<'_>) -> [f32; 2] {
+    let mut next = |otherwise| words.next().map_or(otherwise, |word| word.parse().unwrap_or(f32::NAN));
+    [next(f32::NAN), 1.0 - next(0.0)]
+}
+
+/// The number of the texture coordinates of a corner, if it names any. They need not be there yet;
+/// what never comes is no reason to refuse a mesh.
+fn place(word: &str, mapping: &Mapping) -> u32 {
+    let index = word.split('/').nth(1).and_then(|text| text.parse::<i64>().ok()).unwrap_or(0);
+    let before = if index < 0 { mapping.coordinates.len() as i64 } else { -1 };
+    u32::try_from(index.saturating_add(before)).unwrap_or(Mapping::NONE)
+}
+
 /// The number of the material `name`, a new and neutral one where it was not met before.
 fn material_id(name: &str, ids: &mut HashMap<String, u16>, model: &mut Model) -> Result<u16, Fault> {
     if let Some(id) = ids.get(name) {
@@ -115,7 +136,11 @@ fn materials(names: &str, folder: &Path, warnings: &mut Vec<String>) -> HashMap<
     let mut materials = HashMap::new();
     for file in files {
         match read_companion(folder, file) {
-            Ok(bytes) => materials.extend(mtl::read(&String::from_utf8_lossy(&bytes))),
+            Ok(bytes) => {
+                let beside = folder.join(file);
+                let beside = beside.parent().unwrap_or(folder);
+                materials.extend(mtl::read(&String::from_utf8_lossy(&bytes), beside));
+            }
             Err(error) => {
                 let (file, reason) = (excerpt(file), input::explain(&error));
                 warnings.push(format!("material library `{file}`: {reason}"));

@@ -10,6 +10,7 @@ mod palette;
 mod preset;
 mod queries;
 mod shape;
+mod skin;
 mod source;
 mod subject;
 
@@ -23,4 +24,5 @@ pub use palette::Palette;
 pub use preset::Preset;
 pub use queries::Queries;
 pub use shape::Shape;
+pub use skin::Skin;
 pub use source::{Geometry, Source, View};

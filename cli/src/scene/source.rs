@@ -6,11 +6,11 @@ use hitscan::{
     asset::{Asset, AssetError, Kind},
     bake::Baker,
     glam::Vec3,
-    primitives::{Indices, Normals, Primitives, Renumbering, Reordered},
-    render::Materials,
+    primitives::{Indices, Normals, Primitives, Renumbering, Reordered, TexCoords},
+    render::{Materials, Textures},
 };
 
-use super::{Built, Choice, Palette, Preset, StructureArgs, broken};
+use super::{Built, Choice, Palette, Preset, Skin, StructureArgs, broken};
 use crate::{
     failure::{Failure, warn},
     input,
@@ -48,6 +48,8 @@ pub struct Geometry {
     pub narrow: Vec<[u16; 3]>,
     /// Materials.
     pub palette: Palette,
+    /// Pictures on them, if they are wanted and there are any.
+    pub skin: Option<Box<Skin>>,
     /// Which part of the file each run of triangles is; none if the format places nothing.
     pub placements: Vec<Placement>,
     /// Whether y is up by the definition of the file's format.
@@ -62,20 +64,26 @@ impl Geometry {
             narrow = wide.iter().map(|corners| corners.map(|vertex| vertex as u16)).collect();
             wide = Vec::new();
         }
-        Self { vertices, wide, narrow, palette, placements: Vec::new(), y_up: false }
+        Self { vertices, wide, narrow, palette, skin: None, placements: Vec::new(), y_up: false }
     }
 
-    /// The model of a file; what is odd about it is said on standard error.
-    pub fn load(path: &Path) -> Result<Self, Failure> {
-        let model = Model::load(path)?;
-        for warning in &model.warnings {
-            warn(&format!("{}: {warning}", path.display()));
-        }
+    /// The model of a file, with pictures of at most so many pixels along a side if they are wanted; what is odd about it
+    /// is said on standard error.
+    pub fn load(path: &Path, textures: Option<u16>) -> Result<Self, Failure> {
+        let mut model = Model::load(path)?;
+        let say = |warning: &str| warn(&format!("{}: {warning}", path.display()));
+        model.warnings.iter().for_each(|warning| say(warning));
+        let skin = textures.and_then(|most| Skin::of_model(&mut model, most, |warning| say(&warning)));
         let vertices = model.vertices.into_iter().map(Vec3::from_array).collect();
         let palette = Palette::of_model(&model.materials, model.material_ids);
         let name = path.to_string_lossy().to_ascii_lowercase();
         let y_up = [".gltf", ".glb", ".gltf.gz", ".glb.gz"].iter().any(|ending| name.ends_with(ending));
-        Ok(Self { y_up, placements: model.placements, ..Self::new(vertices, model.triangles, palette) })
+        Ok(Self {
+            y_up,
+            skin: skin.map(Box::new),
+            placements: model.placements,
+            ..Self::new(vertices, model.triangles, palette)
+        })
     }
 
     /// How many triangles there are.
@@ -107,6 +115,8 @@ pub struct View<'a> {
     pub mesh: Mesh<'a>,
     /// Their materials, if it names any.
     pub materials: Option<Materials<'a>>,
+    /// The pictures on them, and where in these the vertices lie, if there are any.
+    pub textures: Option<(Textures<'a>, TexCoords<'a>)>,
     /// The normals of an asset's vertices, if it has any.
     pub normals: Option<Normals<'a>>,
     /// The structure of an asset, if it has one.
@@ -120,12 +130,22 @@ pub struct View<'a> {
 }
 
 impl Source {
-    /// Reads a mesh file, an asset or the description of a world, told apart by the first bytes and the extension.
+    /// Reads a mesh file, an asset or the description of a world, told apart by the first bytes and the extension; the
+    /// pictures that a mesh file names are not read.
     ///
     /// # Errors
     ///
     /// What is wrong with the file.
     pub fn load(path: &Path) -> Result<Self, Failure> {
+        Self::load_with(path, None)
+    }
+
+    /// The same, with pictures of at most so many pixels along a side if they are wanted.
+    ///
+    /// # Errors
+    ///
+    /// What is wrong with the file.
+    pub fn load_with(path: &Path, textures: Option<u16>) -> Result<Self, Failure> {
         let progress = Progress::spinner(&format!("reading {} …", path.display()));
         let mut start = [0; 4];
         let marked = File::open(path).and_then(|mut file| file.read_exact(&mut start)).is_ok() && start == *MAGIC;
@@ -134,7 +154,7 @@ impl Source {
         } else if path.extension().is_some_and(|extension| extension == "toml") {
             Self::Asset { words: world::load(path, &StructureArgs::default())?, positions: Vec::new() }
         } else {
-            Self::Model(Geometry::load(path).map_err(|failure| mention_assets(failure, path))?)
+            Self::Model(Geometry::load(path, textures).map_err(|failure| mention_assets(failure, path))?)
         };
         progress.finish();
         Ok(source)
@@ -173,6 +193,9 @@ impl Source {
                 if !geometry.palette.materials.is_empty() {
                     baker = baker.materials(&geometry.palette.materials, geometry.palette.as_numbers());
                 }
+                if let Some(skin) = &geometry.skin {
+                    baker = skin.bake(baker);
+                }
                 Ok(hash(&baker.finish()))
             }
             Self::Asset { words, .. } => Ok(hash(words)),
@@ -190,8 +213,11 @@ impl Source {
                 let palette = &geometry.palette;
                 let materials = (!palette.materials.is_empty()).then(|| palette.as_materials());
                 let mesh = geometry.mesh().map_err(name)?;
+                let skin = geometry.skin.as_ref().map(|skin| Asset::from_words(skin.as_words())).transpose();
+                let textures = skin.map_err(|error| broken(hitscan::Error::from(error)))?;
+                let textures = textures.map(|skin| pictures(&skin)).transpose().map_err(broken)?.flatten();
                 let (y_up, seconds) = (geometry.y_up, 0.0);
-                Ok(View { mesh, materials, normals: None, structure: None, renumbering: None, y_up, seconds })
+                Ok(View { mesh, materials, textures, normals: None, structure: None, renumbering: None, y_up, seconds })
             }
             Self::Asset { .. } if self.world().is_some() => {
                 let what = format!("{}: is a world of placed scenes", path.display());
@@ -209,6 +235,7 @@ impl Source {
                     asset.read().map_err(damaged)?
                 };
                 let materials = has(Kind::Materials).then(|| asset.read().map_err(damaged)).transpose()?;
+                let textures = pictures(&asset).map_err(damaged)?;
                 let normals = has(Kind::Normals).then(|| asset.read().map_err(damaged)).transpose()?;
                 // An asset without one is a list.
                 let structure = match asset.read() {
@@ -218,10 +245,16 @@ impl Source {
                 };
                 let renumbering = has(Kind::Numbers).then(|| asset.read().map_err(damaged)).transpose()?;
                 let (y_up, seconds) = (false, progress.finish());
-                Ok(View { mesh, materials, normals, structure, renumbering, y_up, seconds })
+                Ok(View { mesh, materials, textures, normals, structure, renumbering, y_up, seconds })
             }
         }
     }
+}
+
+/// The pictures of an asset and where its vertices lie in them, if it has both.
+fn pictures<'a>(asset: &Asset<'a>) -> Result<Option<(Textures<'a>, TexCoords<'a>)>, Error> {
+    let has = |kind| asset.sections().any(|section| section.kind == kind);
+    if has(Kind::Textures) && has(Kind::TexCoords) { Ok(Some((asset.read()?, asset.read()?))) } else { Ok(None) }
 }
 
 impl<'a> View<'a> {

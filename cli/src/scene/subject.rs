@@ -6,8 +6,8 @@ use hitscan::{
     asset::{Asset, AssetError, Kind, Stored},
     geometry::Aabb,
     glam::Vec3,
-    primitives::{Smooth, Surface},
-    render::{Caster, Material, Materials},
+    primitives::{Mapped, Smooth, Surface, TexCoords},
+    render::{Caster, Material, Materials, Textures},
 };
 
 use super::{Built, Palette, Queries, Source, StructureArgs, View, broken, normals_by_place, source::damaged};
@@ -53,10 +53,12 @@ impl Source {
             Some(normals) if !smooth => Smooth::packed(view.mesh, normals),
             _ => Smooth::new(view.mesh, &normals),
         };
-        let renumbered = view.renumbered(shaded)?;
+        let coordinates = view.textures.map_or(TexCoords::new(&[]), |(_, coordinates)| coordinates);
+        let mapped = Mapped::new(shaded, &view.mesh, coordinates);
+        let renumbered = view.renumbered(mapped)?;
         let scene = match &renumbered {
             Some(triangles) => built.scene(triangles)?,
-            None => built.scene(&shaded)?,
+            None => built.scene(&mapped)?,
         };
         let body = Body::Mesh { view: &view, built: &built };
         visit(&Subject { scene: &*scene, primitives: view.mesh.len(), body })
@@ -102,6 +104,14 @@ impl Subject<'_> {
         }
         palette.push(plate(), 1);
         palette
+    }
+
+    /// The textures of its materials, if there are any.
+    pub fn textures(&self) -> Option<(Materials<'_>, Textures<'_>)> {
+        match &self.body {
+            Body::Mesh { view, .. } => view.materials.zip(view.textures.map(|(textures, _)| textures)),
+            Body::World { .. } => None,
+        }
     }
 
     /// How many triangles there are, for people.
@@ -166,7 +176,7 @@ impl<A: Accelerator, T: Accelerator> Caster for World<'_, A, T> {
         self.scene.surface(ray, hit)
     }
 
-    fn material(&self, hit: &Hit) -> Option<Material> {
+    fn material(&self, hit: &Hit, _surface: &Surface) -> Option<Material> {
         let instances = self.scene.primitives();
         let (instance, primitive) = instances.locate(hit.primitive)?;
         let scene = instances.placed().get(instance as usize)?.scene();

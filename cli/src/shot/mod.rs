@@ -13,7 +13,7 @@ use std::{fmt::Write as _, iter, ops::Range, path::Path};
 use hitscan::{
     Primitives,
     primitives::{Smooth, Spheres},
-    render::{Camera, Caster, Materials, Renderer, Tile},
+    render::{Camera, Caster, Materials, Renderer, Textured, Tile},
 };
 use rayon::prelude::*;
 
@@ -64,7 +64,9 @@ pub fn with_shot<R>(
 ) -> Result<R, Failure> {
     let Some((source, path)) = source else { return built_in(settings, visit) };
     source.with_subject(path, &settings.structure, settings.smooth, |subject| {
-        let scene = subject.scene;
+        let scene: &(dyn Caster + Sync) = subject.scene;
+        let textured = subject.textures().map(|(materials, textures)| Textured::new(scene, materials, textures));
+        let scene = textured.as_ref().map_or(scene, |textured| textured);
         let bounds = scene.bounds();
         let up = settings.up.unwrap_or_else(|| subject.up());
         let viewpoint = Viewpoint::new(settings.camera, &bounds, up, settings.aspect(), subject.points());

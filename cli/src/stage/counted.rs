@@ -144,8 +144,8 @@ impl<S: Caster + ?Sized> Caster for Counted<'_, S> {
         self.scene.surface(ray, hit)
     }
 
-    fn material(&self, hit: &Hit) -> Option<Material> {
-        self.scene.material(hit)
+    fn material(&self, hit: &Hit, surface: &Surface) -> Option<Material> {
+        self.scene.material(hit, surface)
     }
 
     fn bounds(&self) -> Aabb {

@@ -119,8 +119,8 @@ impl<S: Caster + ?Sized> Caster for Grounded<'_, S> {
         }
     }
 
-    fn material(&self, hit: &Hit) -> Option<Material> {
-        if hit.primitive == self.number { None } else { self.scene.material(hit) }
+    fn material(&self, hit: &Hit, surface: &Surface) -> Option<Material> {
+        if hit.primitive == self.number { None } else { self.scene.material(hit, surface) }
     }
 
     fn bounds(&self) -> Aabb {

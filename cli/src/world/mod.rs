@@ -108,7 +108,7 @@ fn part(path: &Path, mesh: &str, structure: &Named, preset: Preset) -> Result<Pa
     } else {
         let beside = path.parent().unwrap_or(Path::new("")).join(mesh);
         // Neither an asset nor a world, which might be this one.
-        Geometry::load(&beside)?
+        Geometry::load(&beside, None)?
     };
     let built = Built::named(&geometry.mesh()?, structure, preset, None)?;
     Ok(Part { geometry, built })

@@ -7,4 +7,5 @@ mod failures;
 mod folder;
 mod parts;
 mod render;
+mod textures;
 mod world;

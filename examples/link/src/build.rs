@@ -8,8 +8,9 @@ use hitscan::{
     asset::{Asset, Stored},
     from_fn,
     geometry::Bundle,
-    primitives::{Renumbering, Smooth, Soup, Spheres},
+    primitives::{Mapped, Renumbering, Smooth, Soup, Spheres},
     render::Materials,
+    render::Textures,
 };
 
 use crate::{
@@ -125,7 +126,8 @@ fn assets() {
         read::<LatticeMesh<'_>>(&asset);
         read::<Soup<'_>>(&asset);
         read::<Spheres<'_>>(&asset);
-        read::<Smooth<'_>>(&asset);
+        read::<Mapped<'_, Smooth<'_>>>(&asset);
+        read::<Textures<'_>>(&asset);
         read::<Materials<'_>>(&asset);
         read::<Renumbering<'_>>(&asset);
         read::<&[Instance]>(&asset);

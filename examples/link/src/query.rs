@@ -9,14 +9,15 @@ use hitscan::{
     error::BuildError,
     geometry::{Bundle, Transform},
     primitives::{
-        Indices, LatticeTriangles, Normals, Order, Proximity, Renumbering, Reordered, Sides, Smooth, Soup, Spheres, Surface,
+        Indices, LatticeTriangles, Mapped, Normals, Order, Proximity, Renumbering, Reordered, Sides, Smooth, Soup,
+        Spheres, Surface, TexCoords,
     },
 };
 
 use crate::{
     input::{aabb, facet, float, matrix, ray, some, sphere, vector, word},
     own::{Own, asked},
-    plan,
+    plan, render,
 };
 
 /// Casts rays at meshes, spheres and both together, with and without a tree.
@@ -40,6 +41,13 @@ pub fn all() {
         if let Ok(list) = List::new(&smooth) {
             cast(Scene::new(list, smooth));
         }
+    }
+    let mut places = None;
+    let coordinates = black_box(TexCoords::new(some(|| vector().truncate(), &mut places)));
+    black_box((coordinates.len(), coordinates.is_empty(), coordinates.get(word())));
+    let mapped = Mapped::new(smooth, &mesh, coordinates);
+    if let Ok(list) = List::new(&mapped) {
+        cast(Scene::new(list, mapped));
     }
     with(&Own);
     lattice(mesh.indices());
@@ -90,6 +98,7 @@ fn lattice(indices: Indices<'_>) {
 fn whole<A: LatticeAccelerator>(structure: Result<A, BuildError>, mesh: impl LatticeTriangles) {
     let Ok(structure) = structure else { return };
     let Ok(scene) = LatticeScene::new(structure, mesh) else { return };
+    render::pixel(&scene);
     black_box((scene.closest_hit(&ray()), scene.any_hit(&ray()), scene.accelerator().primitives()));
     let rays = scene.space().rays(vector(), vector(), vector(), word());
     black_box(rays.size_hint());

@@ -13,8 +13,8 @@ use hitscan::{
     display::{self, Packed, Strip},
     primitives::Spheres,
     render::{
-        Camera, Caster, Channels, Diffusion, Dither, Light, Material, Materials, Nearest, Numbers, Ordered, Renderer,
-        Terms, Tile,
+        Camera, Caster, Channels, Diffusion, Dither, Filter, Light, Material, Materials, Nearest, Numbers, Order,
+        Ordered, Renderer, Terms, Texels, Texture, Textured, Textures, Tile, Wrap,
     },
 };
 
@@ -41,6 +41,7 @@ pub fn all() {
     let renderer = renderer.with_bounces(word()).with_samples(word()).with_ambient(vector());
     let terms = Terms { shadows: word() == 0, specular: word() == 0, ..Terms::ALL };
     let renderer = renderer.with_terms(terms).with_background(vector(), vector());
+    textured(&scene, materials);
     for tile in renderer.tiles(word(), word()).chain(renderer.scanlines()) {
         let mut pixels = [0_u16; 64];
         black_box(renderer.fill(tile, &mut pixels).is_ok());
@@ -54,6 +55,8 @@ pub fn all() {
     let mut rough = renderer.progressive();
     black_box(rough.step(word(), |tile, color| _ = black_box((tile, color))));
     black_box(rough.next());
+    let mut order = Order::new(word(), word());
+    black_box((order.next(), order.tile(), order.pass(), renderer.samples()));
     let tile = Tile { x: word(), y: word(), width: word(), height: word() };
     let camera = camera();
     black_box((camera.eye(), camera.forward(), camera.up(), camera.bundle(&tile, word(), word())));
@@ -69,6 +72,34 @@ pub fn all() {
     sensor::sees(&scene);
     #[cfg(feature = "objects")]
     sensor::sees(&scene as &dyn Caster);
+}
+
+/// A pixel of any scene, in a patch.
+pub fn pixel<S: Caster>(scene: &S) {
+    let renderer = Renderer::new(scene, camera(), word(), word()).with_bounces(word());
+    let tile = Tile { x: word(), y: word(), width: word(), height: word() };
+    black_box(renderer.patch(tile).pixel(word(), word()));
+}
+
+/// A texture of every kind, and a picture with it.
+fn textured<S: Caster>(scene: &S, materials: Materials<'_>) {
+    let (mut colors, mut bytes) = (None, None);
+    let palette = some(|| word() as u16, &mut colors);
+    let texels = match word() {
+        0 => Texels::Rgb565(palette),
+        1 => Texels::Palette8 { palette, texels: some(|| word() as u8, &mut bytes) },
+        _ => Texels::Palette4 { palette, texels: some(|| word() as u8, &mut bytes) },
+    };
+    let Ok(texture) = Texture::new(word() as u16, word() as u16, texels) else { return };
+    let wrap = if word() == 0 { Wrap::Repeat } else { Wrap::Clamp };
+    let texture = texture.with_filter(if word() == 0 { Filter::Nearest } else { Filter::Bilinear }).with_wrap(wrap);
+    black_box((texture.width(), texture.height(), texture.filter(), texture.wrap(), texture.texels()));
+    let textures = [Some(texture)];
+    let textures = black_box(Textures::new(&textures));
+    black_box((textures.get(word()), materials.number(word())));
+    black_box(
+        Renderer::new(&Textured::new(scene, materials, textures), camera(), word(), word()).pixel(word(), word()),
+    );
 }
 
 /// Pictures for displays of few colours, in memory and drawn.

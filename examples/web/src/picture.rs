@@ -1,6 +1,9 @@
-use hitscan::render::{Color, Renderer, Tile};
+use hitscan::render::{Color, Order, Patch, Renderer, Tile, Tiles};
 
-use crate::{Block, Order, View, World, heat, world::Tally};
+use crate::{View, World, heat, world::Tally};
+
+/// Pixels along a side of a tile whose edges are smoothed.
+const TILE: u32 = 8;
 
 /// A picture that is drawn a little at a time, coarse first, its edges smoothed last.
 #[expect(missing_debug_implementations, reason = "scenes behind a trait have none")]
@@ -8,9 +11,13 @@ pub struct Picture<'w> {
     world: &'w World,
     view: View,
     renderer: Renderer<'w, Tally>,
+    /// Each pixel once.
     order: Order,
-    /// Where the last step drew.
+    /// Tiles of which each pixel is drawn once more.
+    again: Tiles,
+    /// Where the last step drew, and where the rays of that tile begin.
     tile: Tile,
+    patch: Option<Patch<'w, Tally>>,
     pixels: Vec<[u8; 4]>,
 }
 
@@ -20,26 +27,70 @@ impl<'w> Picture<'w> {
     pub fn new(world: &'w World, view: View) -> Self {
         let view = view.sane();
         world.reset();
-        let order = Order::new(view.width, view.height);
-        let pixels = vec![[0; 4]; view.width as usize * view.height as usize];
-        Self { world, view, renderer: world.renderer(&view, 1), tile: order.tile(), order, pixels }
+        let (width, height) = if view.samples > 1 { (view.width, view.height) } else { (0, 0) };
+        Self {
+            world,
+            view,
+            renderer: world.renderer(&view, 1),
+            order: Order::new(view.width, view.height),
+            again: Tiles::new(width, height, TILE, TILE),
+            tile: Tile { x: 0, y: 0, width: 0, height: 0 },
+            patch: None,
+            pixels: vec![[0; 4]; view.width as usize * view.height as usize],
+        }
     }
 
-    /// Draws at most so many blocks, all of one tile; how many, 0 at the end.
+    /// Draws at most so many blocks, all of one tile, or smooths the edges of a small one; how many blocks, 0 at the end.
     pub fn step(&mut self, blocks: u32) -> u32 {
-        let Self { world, view, renderer, order, pixels, tile } = self;
-        let mut draw = |block| fill(pixels, view.width, block, pixel(world, view, renderer, block));
-        let drawn = order.step(blocks, &mut draw);
-        if drawn > 0 {
-            *tile = order.tile();
-            return drawn;
+        let mut drawn = 0;
+        while drawn < blocks {
+            // Looked at before it is gone on to: it may be of the next tile.
+            let mut ahead = self.order.clone();
+            let Some(block) = ahead.next() else { break };
+            if drawn > 0 && ahead.tile() != self.tile {
+                return drawn;
+            }
+            self.order = ahead;
+            self.enter(self.order.tile());
+            self.draw(block);
+            drawn += 1;
         }
-        if view.samples == 1 || order.size() == 0 {
-            return 0;
+        if drawn > 0 { drawn } else { self.smooth() }
+    }
+
+    /// Draws the next tile once more, with all samples; how many pixels it has.
+    fn smooth(&mut self) -> u32 {
+        let Some(tile) = self.again.next() else { return 0 };
+        if self.renderer.samples() != self.view.samples {
+            self.renderer = self.world.renderer(&self.view, self.view.samples);
+            self.patch = None;
         }
-        *order = Order::again(view.width, view.height);
-        *renderer = world.renderer(view, view.samples);
-        self.step(blocks)
+        self.enter(tile);
+        tile.pixels().for_each(|(x, y)| self.draw(Tile { x, y, width: 1, height: 1 }));
+        tile.area() as u32
+    }
+
+    /// Finds where the rays of a tile begin; a heat map shows whole walks.
+    fn enter(&mut self, tile: Tile) {
+        if self.patch.is_none() || self.tile != tile {
+            self.patch = (!self.view.heat).then(|| self.renderer.patch(tile));
+            self.tile = tile;
+        }
+    }
+
+    /// Draws a block of the tile.
+    fn draw(&mut self, block: Tile) {
+        let color = match &self.patch {
+            Some(patch) => opaque(Color::from_linear(patch.pixel(block.x, block.y))),
+            None => heat(self.world, &self.renderer, (block.x, block.y)),
+        };
+        let (left, right) = (block.x as usize, (block.x + block.width) as usize);
+        let rows = self.pixels.chunks_mut(self.view.width.max(1) as usize);
+        for row in rows.skip(block.y as usize).take(block.height as usize) {
+            if let Some(part) = row.get_mut(left..right) {
+                part.fill(color);
+            }
+        }
     }
 
     /// The colours, row by row: red, green, blue and opacity, which is 0 where nothing was drawn.
@@ -54,10 +105,10 @@ impl<'w> Picture<'w> {
         self.tile
     }
 
-    /// The size of the blocks that are drawn; 0 when edges are being smoothed.
+    /// How far apart the pixels are that are drawn: 8, 4, 2 or 1; 0 when edges are being smoothed.
     #[must_use]
     pub fn fineness(&self) -> u32 {
-        self.order.size()
+        8 >> self.order.pass().div_ceil(2)
     }
 
     /// The finished picture by the library's own way, row by row: what all steps together must come to.
@@ -68,32 +119,24 @@ impl<'w> Picture<'w> {
         let renderer = world.renderer(&view, view.samples);
         let whole = Tile { x: 0, y: 0, width: view.width, height: view.height };
         if view.heat {
-            return whole.pixels().map(|(x, y)| pixel(world, &view, &renderer, Block { x, y, size: 1 })).collect();
+            return whole.pixels().map(|pixel| heat(world, &renderer, pixel)).collect();
         }
         let mut pixels = vec![[0_u8; 3]; whole.area()];
         // The slice has as many pixels as the tile.
         let _ = renderer.fill(whole, &mut pixels);
-        pixels.into_iter().map(|[r, g, b]| [r, g, b, 255]).collect()
+        pixels.into_iter().map(opaque).collect()
     }
 }
 
-fn pixel(world: &World, view: &View, renderer: &Renderer<'_, Tally>, at: Block) -> [u8; 4] {
-    let before = world.nodes();
-    let color = renderer.pixel(at.x, at.y);
-    if view.heat {
-        return heat::color((world.nodes() - before) as f32);
-    }
-    let [r, g, b] = Color::from_linear(color);
+const fn opaque([r, g, b]: [u8; 3]) -> [u8; 4] {
     [r, g, b, 255]
 }
 
-fn fill(pixels: &mut [[u8; 4]], width: u32, block: Block, color: [u8; 4]) {
-    let right = (block.x + block.size).min(width) as usize;
-    for row in pixels.chunks_mut(width.max(1) as usize).skip(block.y as usize).take(block.size as usize) {
-        if let Some(part) = row.get_mut(block.x as usize..right) {
-            part.fill(color);
-        }
-    }
+/// How many nodes a pixel takes, as a colour.
+fn heat(world: &World, renderer: &Renderer<'_, Tally>, (x, y): (u32, u32)) -> [u8; 4] {
+    let before = world.nodes();
+    let _ = renderer.pixel(x, y);
+    heat::color((world.nodes() - before) as f32)
 }
 
 #[cfg(test)]

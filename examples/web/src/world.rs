@@ -1,9 +1,9 @@
 use std::cell::Cell;
 
 use hitscan::{
-    Arena, Hit, Mesh, Ray, Scene,
-    accel::{Accelerator, Counted, Structure},
-    geometry::Aabb,
+    Arena, Hit, KdTree, Mesh, Ray, Scene,
+    accel::{Accelerator, Counted, Entries, Structure},
+    geometry::{Aabb, Bundle},
     glam::{Quat, Vec3},
     primitives::{Smooth, Spheres, Surface},
     render::{Camera, Caster, Materials, Numbers, Renderer},
@@ -44,10 +44,14 @@ impl World {
         let nodes: &'static Cell<u64> = Box::leak(Box::default());
         // Always counted: linking every walk twice would not fit into the module.
         let scene = Scene::new(Counted::new(structure, nodes), shape).map_err(|error| error.to_string())?;
+        let tree = match structure {
+            Structure::KdTree(tree) => Scene::new(Counted::new(tree, nodes), shape).ok(),
+            _ => None,
+        };
 
         let focus = model.focus.unwrap_or(scene.bounds());
         Ok(Self {
-            scene: Tally::new(scene),
+            scene: Tally { scene, tree, rays: Cell::new(0) },
             nodes,
             primitives: structure.primitives(),
             structure_bytes: structure.as_words().len() * 4,
@@ -118,19 +122,18 @@ impl World {
 }
 
 /// The one kind of scene: by its name, because behind `dyn` the queries that nobody asks are linked, too.
-type Shapes = Scene<Counted<'static, Structure<'static>>, (Smooth<'static>, Spheres<'static>)>;
+type Shapes<A> = Scene<Counted<'static, A>, (Smooth<'static>, Spheres<'static>)>;
 
 /// A scene that counts the rays cast at it.
 pub(crate) struct Tally {
-    scene: Shapes,
+    scene: Shapes<Structure<'static>>,
+    /// The same if its structure is a kD-tree, the only one in which tiles look for where their rays begin: for all of them it
+    /// would not fit into the module.
+    tree: Option<Shapes<KdTree<'static>>>,
     rays: Cell<u64>,
 }
 
 impl Tally {
-    fn new(scene: Shapes) -> Self {
-        Self { scene, rays: Cell::new(0) }
-    }
-
     fn count(&self) {
         self.rays.set(self.rays.get() + 1);
     }
@@ -142,9 +145,29 @@ impl Caster for Tally {
         self.scene.closest_hit(ray)
     }
 
-    fn any_hit(&self, ray: &Ray, _depth: u32) -> bool {
+    fn enter(&self, bundle: &Bundle) -> Entries {
+        match &self.tree {
+            Some(tree) => tree.enter(bundle),
+            None => Entries::whole(self.scene.bounds(), bundle),
+        }
+    }
+
+    fn closest_hit_from(&self, entries: &Entries, ray: &Ray) -> Option<Hit> {
         self.count();
-        self.scene.any_hit(ray)
+        match &self.tree {
+            Some(tree) => tree.closest_hit_from(entries, ray),
+            None if entries.is_empty() => None,
+            None => self.scene.closest_hit(ray),
+        }
+    }
+
+    fn any_hit(&self, ray: &Ray, depth: u32) -> bool {
+        self.any_hit_near(ray, depth, &mut None)
+    }
+
+    fn any_hit_near(&self, ray: &Ray, _depth: u32, last: &mut Option<u32>) -> bool {
+        self.count();
+        self.scene.any_hit_near(ray, last)
     }
 
     fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {

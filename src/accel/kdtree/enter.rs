@@ -1,4 +1,4 @@
-use super::{MAX_DEPTH, node::Side};
+use super::node::Side;
 use crate::{
     accel::{Entries, Entry},
     geometry::{Aabb, Axis, Bundle},
@@ -66,7 +66,8 @@ enum Found {
     Halves([Beam; 2], Planes),
 }
 
-/// Nodes that are visited to tell whether a cell is empty; it counts as one that is not if they do not suffice.
+/// Nodes that are visited to tell whether a cell is empty; it counts as one that is not if they, or what may wait, do not
+/// suffice.
 const PATIENCE: u32 = 64;
 
 /// The smallest cell of a tree that holds all that the rays can meet; none if there is nothing.
@@ -95,9 +96,12 @@ pub(super) fn entries(mut bounds: Aabb, bundle: &Bundle, open: impl Fn(u32) -> O
     Entry { bounds, node: at.node, enter: at.enter }.into()
 }
 
+/// Nodes that may wait while it is told: few, because a search must not take more stack than the walks that it is for.
+const WAITING: usize = 8;
+
 /// Whether there certainly is nothing in a cell that the rays can meet.
 fn is_empty(bundle: &Bundle, at: Beam, open: impl Fn(u32) -> Option<Opened>) -> bool {
-    let mut waiting: heapless::Vec<Beam, MAX_DEPTH> = heapless::Vec::new();
+    let mut waiting: heapless::Vec<Beam, WAITING> = heapless::Vec::new();
     let mut next = Some(at);
     for _ in 0..PATIENCE {
         let Some(beam) = next else { return true };
@@ -106,8 +110,9 @@ fn is_empty(bundle: &Bundle, at: Beam, open: impl Fn(u32) -> Option<Opened>) -> 
             Found::Nothing => waiting.pop(),
             Found::Half(half, ..) => Some(half),
             Found::Halves([left, right], _) => {
-                // Cannot fail: no tree is deeper than its stack.
-                let _ = waiting.push(right);
+                if waiting.push(right).is_err() {
+                    return false;
+                }
                 Some(left)
             }
         };

@@ -139,6 +139,24 @@ fn quotient(triangle: &Triangle, ray: &PreparedRay) -> Option<f32> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::{geometry::Ray, testing::Random};
+
+    #[test]
+    fn most_rays_are_decided() {
+        let mut random = Random::new(5);
+        let (mut rays, mut sides, mut parameters) = (0, 0, 0);
+        for round in 0..1000 {
+            let length = [1.0e-8, 1.0e-3, 1.0, 1.0e3, 1.0e8][round % 5];
+            let mut point = || Vec3::from_array([0; 3].map(|_| (random.unit() * 2.0 - 1.0) * length));
+            let (triangle, origin) = (Triangle::new(point(), point(), point()), point());
+            let inside = (triangle.a + triangle.b + triangle.c) / 3.0;
+            let Some(ray) = Ray::new(origin, (inside - origin) / length).prepare() else { continue };
+            rays += 1;
+            sides += u32::from(signs(&triangle, &ray).iter().all(Option::is_some));
+            parameters += u32::from(quotient(&triangle, &ray).is_some());
+        }
+        assert!(rays > 900 && sides > rays * 99 / 100 && parameters > rays * 9 / 10, "{rays} {sides} {parameters}");
+    }
 
     #[test]
     fn products_and_sums_are_exact_to_48_bits() {

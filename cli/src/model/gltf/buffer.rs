@@ -3,8 +3,10 @@
 use std::path::Path;
 
 use gltf::buffer::Source;
+use gltf::image;
+use gltf::texture::{MagFilter, WrappingMode};
 
-use crate::model::{Fault, read_companion};
+use crate::model::{Contents, Fault, Image, read_companion};
 
 /// Reads a buffer from the file itself, from its own address, or from a file beside it; never from
 /// a network.
@@ -24,6 +26,25 @@ pub(super) fn load_buffer(buffer: &gltf::Buffer<'_>, blob: Option<&[u8]>, folder
         _ => Ok(data),
     });
     data.map_err(|reason| Fault::Buffer { uri: uri.to_owned(), reason })
+}
+
+/// A texture's picture: in a buffer, in its own address, or in a file beside this one.
+pub(super) fn load_image(texture: &gltf::Texture<'_>, buffers: &[Vec<u8>], folder: &Path) -> Image {
+    let contents = match texture.source().source() {
+        image::Source::View { view, .. } => {
+            let end = view.offset().checked_add(view.length());
+            let bytes = end.and_then(|end| buffers.get(view.buffer().index())?.get(view.offset()..end));
+            Contents::Here(bytes.map(<[u8]>::to_vec).ok_or_else(|| "not within its buffer".to_owned()))
+        }
+        image::Source::Uri { uri, .. } if uri.starts_with("data:") => Contents::Here(decode(uri)),
+        image::Source::Uri { uri, .. } => {
+            let name = percent_encoding::percent_decode_str(uri).decode_utf8_lossy();
+            Contents::File(folder.join(&*name))
+        }
+    };
+    let sampler = texture.sampler();
+    let clamp = [sampler.wrap_s(), sampler.wrap_t()] == [WrappingMode::ClampToEdge; 2];
+    Image { contents, nearest: sampler.mag_filter() == Some(MagFilter::Nearest), clamp }
 }
 
 fn decode(uri: &str) -> Result<Vec<u8>, String> {

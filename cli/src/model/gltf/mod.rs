@@ -13,7 +13,7 @@ use gltf::accessor::{DataType, Dimensions};
 use gltf::mesh::Mode;
 
 use super::{Fault, LoadError, Material, Model, Placement};
-use buffer::load_buffer;
+use buffer::{load_buffer, load_image};
 use shading::shading;
 
 /// Reads the file's `bytes`; buffers of their own lie in `folder`.
@@ -29,7 +29,9 @@ pub(super) fn read(bytes: &[u8], folder: &Path) -> Result<Model, LoadError> {
 
     let mut model = Model::default();
     for material in document.materials() {
-        model.push_material(shading(&material))?;
+        let texture = material.pbr_metallic_roughness().base_color_texture();
+        let image = texture.map(|info| load_image(&info.texture(), &buffers, folder));
+        model.push_material(shading(&material, image))?;
     }
     let Some(scene) = document.default_scene().or_else(|| document.scenes().next()) else {
         return Err(Fault::NoTriangles.into());
@@ -99,10 +101,14 @@ fn push_primitive(
         Some(index) => index as u16,
         None => neutral_id(model)?,
     };
+    let before = push_coordinates(model, primitive, buffers);
     let mut push = |corners: [u32; 3]| {
         if let Some(index) = corners.into_iter().find(|index| *index as usize >= vertices) {
             let (triangle, index) = (model.triangles.len(), i64::from(index));
             return Err(Fault::IndexOutOfRange { triangle, index, vertices, first: 0 });
+        }
+        if let Some(before) = before {
+            model.mapping.push_polygon(model.triangles.len(), &corners.map(|index| before as u32 + index));
         }
         model.push_polygon(&corners.map(|index| first as u32 + index), material);
         Ok(())
@@ -117,6 +123,22 @@ fn push_primitive(
         }
         _ => indices.chunks_exact(3).try_for_each(|w| push([w[0], w[1], w[2]])),
     }
+}
+
+/// Adds the coordinates that a primitive's vertices have in its material's picture; how many there were before, or
+/// nothing if the material has none or the file has none that are usable.
+fn push_coordinates(model: &mut Model, primitive: &gltf::Primitive<'_>, buffers: &[Vec<u8>]) -> Option<usize> {
+    let set = primitive.material().pbr_metallic_roughness().base_color_texture()?.tex_coord();
+    let accessor = primitive.get(&gltf::Semantic::TexCoords(set))?;
+    // As for positions, and what lies in no buffer would be zeros without end.
+    let known = matches!(accessor.data_type(), DataType::F32 | DataType::U8 | DataType::U16);
+    if !known || accessor.dimensions() != Dimensions::Vec2 || accessor.view().is_none() {
+        return None;
+    }
+    let reader = primitive.reader(|buffer| buffers.get(buffer.index()).map(Vec::as_slice));
+    let before = model.mapping.coordinates.len();
+    model.mapping.coordinates.extend(reader.read_tex_coords(set)?.into_f32());
+    Some(before)
 }
 
 /// The material of primitives without one, made at its first use.

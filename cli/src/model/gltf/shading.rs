@@ -1,11 +1,16 @@
 //! Metal and roughness in the terms of Phong's model.
 
-use crate::model::Material;
+use crate::model::{Image, Material};
 
 /// Metals reflect by their colour and scatter nothing; all else scatters, with a white 4 % highlight.
-pub(super) fn shading(material: &gltf::Material<'_>) -> Material {
+/// `image` is the picture by which the colour is multiplied.
+pub(super) fn shading(material: &gltf::Material<'_>, image: Option<Image>) -> Material {
     let physical = material.pbr_metallic_roughness();
-    let metallic = physical.metallic_factor().clamp(0.0, 1.0);
+    // Where a picture says what is metal, most is not.
+    let metallic = match physical.metallic_roughness_texture() {
+        Some(_) => 0.0,
+        None => physical.metallic_factor().clamp(0.0, 1.0),
+    };
     let roughness = physical.roughness_factor().clamp(0.0, 1.0);
     let [r, g, b, _] = physical.base_color_factor();
     let base = [r, g, b].map(|x| x.clamp(0.0, 1.0));
@@ -17,5 +22,6 @@ pub(super) fn shading(material: &gltf::Material<'_>) -> Material {
         specular: base.map(|x| 0.04 + (x - 0.04) * metallic),
         shininess: (2.0 / (alpha * alpha) - 2.0).max(1.0),
         reflectivity: metallic * (1.0 - roughness),
+        image,
     }
 }

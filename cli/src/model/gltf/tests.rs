@@ -99,3 +99,45 @@ fn damage_is_refused_not_panicked_at() {
     survives_damage("a.glb", &binary());
     survives_damage("a.gltf", embedded(4).as_bytes());
 }
+
+/// A triangle with a picture of three bytes, and one of the same material without coordinates.
+fn textured() -> String {
+    let floats = [[0.0_f32, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].concat();
+    let mut bytes: Vec<u8> = floats.into_iter().flat_map(f32::to_le_bytes).collect();
+    bytes.extend([0.0_f32, 0.0, 2.0, 0.0, 0.0, 1.0].map(f32::to_le_bytes).as_flattened());
+    bytes.extend(b"PIC");
+    let bytes: String = bytes.iter().map(|byte| format!("%{byte:02x}")).collect();
+    format!(
+        r#"{{"asset":{{"version":"2.0"}},"scenes":[{{"nodes":[0]}}],"nodes":[{{"mesh":0}}],
+        "meshes":[{{"primitives":[{{"attributes":{{"POSITION":0,"TEXCOORD_1":1}},"material":0}},
+        {{"attributes":{{"POSITION":0}},"material":0}}]}}],
+        "materials":[{{"pbrMetallicRoughness":{{"baseColorTexture":{{"index":0,"texCoord":1}},"metallicFactor":0}}}}],
+        "textures":[{{"source":0,"sampler":0}}],"samplers":[{{"magFilter":9728,"wrapS":33071,"wrapT":33071}}],
+        "images":[{{"bufferView":2,"mimeType":"image/png"}}],
+        "buffers":[{{"uri":"data:application/octet-stream,{bytes}","byteLength":63}}],
+        "bufferViews":[{{"buffer":0,"byteLength":36}},{{"buffer":0,"byteOffset":36,"byteLength":24}},
+        {{"buffer":0,"byteOffset":60,"byteLength":3}}],
+        "accessors":[{{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}},
+        {{"bufferView":1,"componentType":5126,"count":3,"type":"VEC2"}}]}}"#
+    )
+}
+
+#[test]
+fn pictures_and_where_they_lie_are_read() {
+    let model = load_bytes("a.gltf", textured().as_bytes()).unwrap();
+    let image = model.materials[0].image.as_ref().unwrap();
+    assert_eq!((image.read().unwrap().as_slice(), image.nearest, image.clamp), (b"PIC".as_slice(), true, true));
+    assert_eq!(model.mapping.of(0), Some([[0.0, 0.0], [2.0, 0.0], [0.0, 1.0]]));
+    assert_eq!((model.mapping.of(1), model.material_ids.as_slice()), (None, [0, 1].as_slice()));
+    assert!(model.materials[1].image.is_none() && model.warnings.len() == 1, "{:?}", model.warnings);
+
+    let with = |from: &str, to: &str| load_bytes("a.gltf", textured().replace(from, to).as_bytes()).unwrap();
+    let linked = with(r#""bufferView":2,"mimeType":"image/png""#, r#""uri":"no%20where.png""#);
+    let image = linked.materials[0].image.clone().unwrap();
+    assert!(image.to_string().ends_with("no where.png`") && image.read().is_err(), "{image}");
+    let beyond = with(r#""byteOffset":60,"byteLength":3"#, r#""byteOffset":60,"byteLength":9"#);
+    assert!(beyond.materials[0].image.clone().unwrap().read().is_err());
+    let unreadable = with(r#""type":"VEC2""#, r#""type":"VEC3""#);
+    assert!(unreadable.mapping.of(0).is_none() && unreadable.warnings.len() == 1);
+    survives_damage("a.gltf", textured().as_bytes());
+}
