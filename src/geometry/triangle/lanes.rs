@@ -103,7 +103,7 @@ pub(crate) struct Crossings<F> {
     backward: bool,
 }
 
-/// [`beyond`] in lanes.
+/// [`beyond`](crate::geometry::beyond) in lanes.
 #[inline(always)]
 fn beyond_all<S: Simd, F: Floats<S>>(t: F) -> F {
     t + t.abs() * (4.0 * WIDENING) + 4.0 * TINY
