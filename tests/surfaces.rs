@@ -1,4 +1,5 @@
 //! What is known of a hit beyond where it is, and decorators that must not change it.
+#![cfg(feature = "std")]
 #![allow(missing_docs)]
 
 mod common;
