@@ -27,6 +27,12 @@ fn build<P: Triangles + Sync>(triangles: P) -> WideBvh<P> {
     WideBvh::new(triangles, &Options::default()).unwrap()
 }
 
+/// The mesh, now and then hit from the front only, now and then with these masks.
+fn some_hidden<'a>(random: &mut Random, mesh: Mesh<'a>, masks: &'a [u32]) -> Mesh<'a> {
+    let mesh = if random.one_in(4) { mesh.with_sides(Sides::Front) } else { mesh };
+    if random.one_in(4) { mesh.with_masks(masks).unwrap() } else { mesh }
+}
+
 /// Casts rays with instructions of one kind.
 fn compare(simd: Simd, seed: u64, rays: usize) {
     let mut random = Random::new(seed);
@@ -35,13 +41,7 @@ fn compare(simd: Simd, seed: u64, rays: usize) {
         let family = random.below(FAMILIES);
         let (vertices, triangles) = adversarial_mesh(&mut random, family, 48);
         let masks: Vec<u32> = triangles.iter().map(|_| random.pick(&[1, 2, 3, u32::MAX])).collect();
-        let mut mesh = Mesh::new(&vertices, &triangles[..]).unwrap();
-        if random.one_in(4) {
-            mesh = mesh.with_sides(Sides::Front);
-        }
-        if random.one_in(4) {
-            mesh = mesh.with_masks(&masks).unwrap();
-        }
+        let mesh = some_hidden(&mut random, Mesh::new(&vertices, &triangles[..]).unwrap(), &masks);
         let list = Scene::new(List::new(&mesh).unwrap(), &mesh).unwrap();
         let options = random.pick(&[Options::fast(), Options::balanced(), Options::best()]);
         let coherence = random.pick(&[Coherence::Measured, Coherence::Coherent, Coherence::Incoherent]);
@@ -127,13 +127,7 @@ fn packets_answer_as_the_list() {
         let family = random.below(FAMILIES);
         let (vertices, triangles) = adversarial_mesh(&mut random, family, 48);
         let masks: Vec<u32> = triangles.iter().map(|_| random.pick(&[1, 2, 3, u32::MAX])).collect();
-        let mut mesh = Mesh::new(&vertices, &triangles[..]).unwrap();
-        if random.one_in(4) {
-            mesh = mesh.with_sides(Sides::Front);
-        }
-        if random.one_in(4) {
-            mesh = mesh.with_masks(&masks).unwrap();
-        }
+        let mesh = some_hidden(&mut random, Mesh::new(&vertices, &triangles[..]).unwrap(), &masks);
         let list = Scene::new(List::new(&mesh).unwrap(), &mesh).unwrap();
         let mut wide = WideBvh::new(&mesh, &Options::fast()).unwrap().with_coherence(Coherence::Coherent);
         for _ in 0..8 {
