@@ -71,9 +71,9 @@ impl Geometry {
     /// is said on standard error.
     pub fn load(path: &Path, textures: Option<u16>) -> Result<Self, Failure> {
         let mut model = Model::load(path)?;
-        let say = |warning: &str| warn(&format!("{}: {warning}", path.display()));
-        model.warnings.iter().for_each(|warning| say(warning));
-        let skin = textures.and_then(|most| Skin::of_model(&mut model, most, |warning| say(&warning)));
+        let skin = textures.map_or(Ok(None), |most| Skin::of_model(&mut model, most));
+        let skin = skin.map_err(|fault| LoadError { path: path.to_owned(), line: None, fault })?;
+        model.warnings.iter().for_each(|warning| warn(&format!("{}: {warning}", path.display())));
         let vertices = model.vertices.into_iter().map(Vec3::from_array).collect();
         let palette = Palette::of_model(&model.materials, model.material_ids);
         let name = path.to_string_lossy().to_ascii_lowercase();
@@ -115,7 +115,7 @@ pub struct View<'a> {
     pub mesh: Mesh<'a>,
     /// Their materials, if it names any.
     pub materials: Option<Materials<'a>>,
-    /// The pictures on them, and where in these the vertices lie, if there are any.
+    /// The pictures on those of an asset, and where in these the vertices lie, if there are any.
     pub textures: Option<(Textures<'a>, TexCoords<'a>)>,
     /// The normals of an asset's vertices, if it has any.
     pub normals: Option<Normals<'a>>,
@@ -213,11 +213,9 @@ impl Source {
                 let palette = &geometry.palette;
                 let materials = (!palette.materials.is_empty()).then(|| palette.as_materials());
                 let mesh = geometry.mesh().map_err(name)?;
-                let skin = geometry.skin.as_ref().map(|skin| Asset::from_words(skin.as_words())).transpose();
-                let textures = skin.map_err(|error| broken(hitscan::Error::from(error)))?;
-                let textures = textures.map(|skin| pictures(&skin)).transpose().map_err(broken)?.flatten();
                 let (y_up, seconds) = (geometry.y_up, 0.0);
-                Ok(View { mesh, materials, textures, normals: None, structure: None, renumbering: None, y_up, seconds })
+                let (textures, normals) = (None, None);
+                Ok(View { mesh, materials, textures, normals, structure: None, renumbering: None, y_up, seconds })
             }
             Self::Asset { .. } if self.world().is_some() => {
                 let what = format!("{}: is a world of placed scenes", path.display());
@@ -252,7 +250,7 @@ impl Source {
 }
 
 /// The pictures of an asset and where its vertices lie in them, if it has both.
-fn pictures<'a>(asset: &Asset<'a>) -> Result<Option<(Textures<'a>, TexCoords<'a>)>, Error> {
+pub(super) fn pictures<'a>(asset: &Asset<'a>) -> Result<Option<(Textures<'a>, TexCoords<'a>)>, Error> {
     let has = |kind| asset.sections().any(|section| section.kind == kind);
     if has(Kind::Textures) && has(Kind::TexCoords) { Ok(Some((asset.read()?, asset.read()?))) } else { Ok(None) }
 }

@@ -4,13 +4,17 @@ use hitscan::{
     Accelerator, Hit, Instance, Instances, Mesh, Primitives, Ray, Scene,
     accel::{Bvh, DualSplit, KdTree, Structure},
     asset::{Asset, AssetError, Kind, Stored},
+    bake::Baker,
     geometry::Aabb,
     glam::Vec3,
     primitives::{Mapped, Smooth, Surface, TexCoords},
     render::{Caster, Material, Materials, Textures},
 };
 
-use super::{Built, Palette, Queries, Source, StructureArgs, View, broken, normals_by_place, source::damaged};
+use super::{
+    Built, Palette, Queries, Source, StructureArgs, View, broken, normals_by_place,
+    source::{damaged, pictures},
+};
 use crate::{
     failure::Failure,
     stage::{Up, glazed, plate},
@@ -46,7 +50,16 @@ impl Source {
         if let Some(asset) = self.world() {
             return with_world(path, &asset, structure, smooth, visit);
         }
-        let view = self.view(path)?;
+        let mut view = self.view(path)?;
+        // As they would be baked, so that the picture of a mesh is that of its asset.
+        let skin = match self {
+            Self::Model(geometry) => geometry.skin.as_ref().map(|skin| skin.bake(Baker::new()).finish()),
+            Self::Asset { .. } => None,
+        };
+        if let Some(words) = &skin {
+            let skin = Asset::from_words(words).map_err(hitscan::Error::from);
+            view.textures = skin.and_then(|skin| pictures(&skin)).map_err(broken)?;
+        }
         let built = view.build(structure.structure, structure.preset)?;
         let normals = if smooth { normals_by_place(&view.mesh) } else { Vec::new() };
         let shaded = match view.normals {

@@ -2,7 +2,9 @@ mod world;
 
 use std::{path::PathBuf, process::ExitCode};
 
-use hitscan::{LatticeMesh, Mesh, Primitives, asset::Asset, bake, geometry::Aabb, primitives::Indices};
+use hitscan::{
+    LatticeMesh, Mesh, Primitives, accel::Structure, asset::Asset, bake, geometry::Aabb, primitives::Indices,
+};
 
 use super::{line, predict, print};
 use crate::{
@@ -156,18 +158,22 @@ fn describe_structure(text: &mut String, built: &Built, view: &View<'_>) -> Resu
     if let Some(why) = &built.why {
         line(text, "chosen because", why);
     }
-    let structure = built.structure(&view.mesh)?;
-    if structure.kind().is_none() {
-        line(text, "expected per ray", format!("{} tests", count(primitives)));
-        return Ok(());
-    }
-    let shape = Shape::of(&structure);
-    line(text, "nodes", count(shape.nodes));
-    line(text, "references", count(shape.references));
-    line(text, "depth", shape.depth);
-    let (nodes, tests) = (shape.expected_nodes, shape.expected_tests);
-    line(text, "expected per ray", format!("{nodes:.1} nodes, {tests:.1} tests, if nothing is hit"));
+    describe_shape(text, &built.structure(&view.mesh)?, primitives as usize);
     Ok(())
+}
+
+/// What a structure over so many things is made of.
+fn describe_shape(text: &mut String, structure: &Structure<'_>, things: usize) {
+    if structure.kind().is_none() {
+        line(text, "expected per ray", format!("{} tests", count(things)));
+        return;
+    }
+    let Shape { nodes, references, depth, expected_nodes, expected_tests } = Shape::of(structure);
+    line(text, "nodes", count(nodes));
+    line(text, "references", count(references));
+    line(text, "depth", depth);
+    let expected = format!("{expected_nodes:.1} nodes, {expected_tests:.1} tests, if nothing is hit");
+    line(text, "expected per ray", expected);
 }
 
 fn describe_sections(text: &mut String, asset: &Asset<'_>) {
