@@ -129,14 +129,14 @@ impl Bake {
             ("--target", self.target.is_some()),
             ("--keep-numbers", self.keep_numbers),
             ("--lattice", self.lattice),
-            ("--textures", self.textures.is_some()),
+            ("--normals", self.normals),
             ("--fit", self.fit.is_some()),
         ];
         if let Some((option, _)) = unfit.into_iter().find(|(_, given)| *given) {
             return Err(Failure::new(format!("{option}: is for meshes"), "leave it out for a world"));
         }
         let structure = StructureArgs { structure: self.structure, preset: self.preset.unwrap_or_default() };
-        let words = world::load(&self.model, &structure)?;
+        let words = world::load(&self.model, &structure, self.textures)?;
         write_words(&self.output, &words)?;
         let source = Source::Asset { words, positions: Vec::new() };
         let table = source.with_subject(&self.output, &StructureArgs::default(), false, |subject| {

@@ -7,6 +7,7 @@ mod choice;
 mod instancing;
 mod normals;
 mod palette;
+mod placed;
 mod preset;
 mod queries;
 mod shape;

@@ -152,7 +152,7 @@ impl Source {
         let source = if marked || path.extension().is_some_and(|extension| extension == "hits") {
             Self::load_asset(path)?
         } else if path.extension().is_some_and(|extension| extension == "toml") {
-            Self::Asset { words: world::load(path, &StructureArgs::default())?, positions: Vec::new() }
+            Self::Asset { words: world::load(path, &StructureArgs::default(), textures)?, positions: Vec::new() }
         } else {
             Self::Model(Geometry::load(path, textures).map_err(|failure| mention_assets(failure, path))?)
         };

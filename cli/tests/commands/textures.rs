@@ -154,3 +154,37 @@ fn what_is_missing_is_said_and_drawn_plain() {
     let error = folder.refuse("bake sign.obj -o a.hits --textures=0");
     assert!(error.contains("--textures"), "{error}");
 }
+
+#[test]
+fn textures_of_placed_parts_are_those_of_their_models() {
+    let folder = Folder::new();
+    folder.write("sign.obj", SIGN);
+    folder.write("sign.mtl", MATERIAL);
+    folder.write("skin.png", squares(8, &[RED, RED, GREEN, GREEN, BLUE, BLUE, BLUE, BLUE]));
+    folder.write("one.toml", "[part.a]\nmesh = \"sign.obj\"\n[[place]]\npart = \"a\"\n");
+    folder.write(
+        "world.toml",
+        "[part.a]\nmesh = \"sign.obj\"\n[part.b]\nmesh = \"tetrahedron.obj\"\n[[place]]\npart = \"b\"\nat = [9, 9, 9]\n\
+         [[place]]\npart = \"a\"\nscale = 0.5\n[[place]]\npart = \"a\"\nat = [1, 0, 0]\nscale = 0.5\n",
+    );
+    let [model, one, twice] = ["sign.obj", "one.toml", "world.toml"].map(|scene| {
+        folder.succeed(&format!("render {scene} -o picture.png --up y {VIEW}"));
+        folder.read("picture.png")
+    });
+    assert!(one == model);
+    // Half as large and side by side: half of the area, and the same colours.
+    let (model, placed) = (shares(&model), shares(&twice));
+    for (large, small) in model.into_iter().zip(placed).take(3) {
+        assert!(small > 0 && (small * 2).abs_diff(large) <= 2, "{model:?} {placed:?}");
+    }
+    for structure in ["kdtree", "bvh", "grid"] {
+        folder.succeed(&format!("bake world.toml -o world.hits --textures=2048 -s {structure}"));
+        folder.succeed(&format!("render world.hits -o asset.png {VIEW}"));
+        assert!(folder.read("asset.png") == twice, "{structure}");
+    }
+    let with = folder.read("world.hits").len();
+    folder.succeed("bake world.toml -o world.hits -s grid");
+    assert!(folder.read("world.hits").len() + 256 < with);
+    folder.succeed(&format!("render world.hits -o plain.png {VIEW}"));
+    assert_eq!(shares(&folder.read("plain.png"))[..2], [0, 0]);
+}

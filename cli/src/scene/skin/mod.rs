@@ -117,10 +117,7 @@ mod tests {
             triangles: vec![[0, 1, 2]; materials.len()],
             material_ids: (0..materials.len() as u16).collect(),
             materials,
-            mapping: Mapping {
-                coordinates: places.concat(),
-                corners: (0..places.len() as u32).map(corners).collect(),
-            },
+            mapping: Mapping { coordinates: places.concat(), corners: (0..places.len() as u32).map(corners).collect() },
             pictures: [(7, Ok(picture::tests::png(2, 2, &[255; 12])))].into(),
             ..Model::default()
         }

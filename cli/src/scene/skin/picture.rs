@@ -83,7 +83,8 @@ fn shrunk(pixels: &RgbImage, most: u32) -> (u16, u16, Vec<u16>) {
     let (width, height) = pixels.dimensions();
     let largest = width.max(height);
     if largest <= most {
-        let nearest: Vec<u16> = (0..=255).map(|level| u16::from_linear(Vec3::splat(Levels::BITS_8.light(level)))).collect();
+        let nearest: Vec<u16> =
+            (0..=255).map(|level| u16::from_linear(Vec3::splat(Levels::BITS_8.light(level)))).collect();
         let color = |rgb: [u8; 3]| {
             let [r, g, b] = rgb.map(|level| nearest[usize::from(level)]);
             r & 0xf800 | g & 0x07e0 | b & 0x001f
@@ -154,7 +155,10 @@ pub mod tests {
         let whole = png(9, 9, &[0; 243]);
         for end in 8..whole.len() - 12 {
             let error = refused(&whole[..end]);
-            assert!(error.starts_with("damaged") && error.ends_with(": save it again") && !error.contains('\n'), "{error}");
+            assert!(
+                error.starts_with("damaged") && error.ends_with(": save it again") && !error.contains('\n'),
+                "{error}"
+            );
         }
     }
 
