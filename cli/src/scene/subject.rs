@@ -11,7 +11,7 @@ use hitscan::{
 };
 
 use super::{
-    Built, Palette, Queries, Source, StructureArgs, View, broken, normals_by_place, placed::with_world,
+    Built, Choice, Palette, Queries, Source, StructureArgs, View, broken, normals_by_place, placed::with_world,
     source::pictures,
 };
 use crate::{
@@ -59,7 +59,10 @@ impl Source {
             let skin = Asset::from_words(words).map_err(hitscan::Error::from);
             view.textures = skin.and_then(|skin| pictures(&skin)).map_err(broken)?;
         }
-        let built = view.build(structure.structure, structure.preset)?;
+        // A soup knows nothing of neighbours.
+        let instead = (smooth && view.soup.is_some()).then_some(Choice::Auto);
+        let choice = structure.structure.or(instead);
+        let built = view.build(choice, structure.preset)?;
         let normals = if smooth { normals_by_place(&view.mesh) } else { Vec::new() };
         let shaded = match view.normals {
             Some(normals) if !smooth => Smooth::packed(view.mesh, normals),
@@ -68,9 +71,10 @@ impl Source {
         let coordinates = view.textures.map_or(TexCoords::new(&[]), |(_, coordinates)| coordinates);
         let mapped = Mapped::new(shaded, &view.mesh, coordinates);
         let renumbered = view.renumbered(mapped)?;
-        let scene = match &renumbered {
-            Some(triangles) => built.scene(triangles)?,
-            None => built.scene(&mapped)?,
+        let scene = match (&renumbered, &view.soup) {
+            (_, Some(soup)) if choice.is_none() => built.scene(soup)?,
+            (Some(triangles), _) => built.scene(triangles)?,
+            _ => built.scene(&mapped)?,
         };
         let body = Body::Mesh { view: &view, built: &built };
         visit(&Subject { scene: &*scene, primitives: view.mesh.len(), body })
