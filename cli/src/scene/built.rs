@@ -66,8 +66,11 @@ impl Built {
         most: Option<usize>,
     ) -> Result<Self, Failure> {
         let name = named.title(preset);
+        let Some(plan) = named.plan(preset, most) else {
+            let what = format!("--structure {}: only renders, casts and compares meshes", named.name);
+            return Err(Failure::new(what, "choose another structure"));
+        };
         let progress = Progress::spinner(&format!("building the {name} …"));
-        let plan = named.plan(preset, most);
         let words = bake::build(primitives, &plan).map_err(refuse)?;
         let seconds = progress.finish();
         Ok(Self { kind: plan.kind(), words, name, why: None, seconds, opened: false })

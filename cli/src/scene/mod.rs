@@ -14,6 +14,7 @@ mod shape;
 mod skin;
 mod source;
 mod subject;
+mod wide;
 
 pub use anatomy::Anatomy;
 pub(crate) use built::unwrapped;
@@ -27,3 +28,4 @@ pub use queries::Queries;
 pub use shape::Shape;
 pub use skin::Skin;
 pub use source::{Geometry, Source, View};
+pub use wide::Wide;

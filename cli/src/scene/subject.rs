@@ -11,7 +11,7 @@ use hitscan::{
 };
 
 use super::{
-    Built, Choice, Palette, Queries, Source, StructureArgs, View, broken, normals_by_place, placed::with_world,
+    Choice, Palette, Queries, Source, StructureArgs, View, Wide, broken, normals_by_place, placed::with_world,
     source::pictures,
 };
 use crate::{
@@ -33,7 +33,7 @@ pub struct Subject<'a> {
 
 #[derive(Clone, Copy)]
 pub(super) enum Body<'a> {
-    Mesh { view: &'a View<'a>, built: &'a Built },
+    Mesh { view: &'a View<'a>, structure: &'a str, time: &'a str },
     World { placed: &'a [Instance], boxes: &'a [Aabb], own: u64, bytes: usize, seconds: f64 },
 }
 
@@ -62,7 +62,6 @@ impl Source {
         // A soup knows nothing of neighbours.
         let instead = (smooth && view.soup.is_some()).then_some(Choice::Auto);
         let choice = structure.structure.or(instead);
-        let built = view.build(choice, structure.preset)?;
         let normals = if smooth { normals_by_place(&view.mesh) } else { Vec::new() };
         let shaded = match view.normals {
             Some(normals) if !smooth => Smooth::packed(view.mesh, normals),
@@ -71,13 +70,29 @@ impl Source {
         let coordinates = view.textures.map_or(TexCoords::new(&[]), |(_, coordinates)| coordinates);
         let mapped = Mapped::new(shaded, &view.mesh, coordinates);
         let renumbered = view.renumbered(mapped)?;
+        let show = |scene: &dyn Queries, structure: &str, time: &str| {
+            let body = Body::Mesh { view: &view, structure, time };
+            visit(&Subject { scene, primitives: view.mesh.len(), body })
+        };
+        if matches!(choice, Some(Choice::Named(named)) if named.is_wide()) {
+            if renumbered.is_some() {
+                let what = format!("{}: its triangles stand in another order than their numbers", path.display());
+                return Err(Failure::new(
+                    what,
+                    "name the mesh it was made from, or choose another structure than wide",
+                ));
+            }
+            let wide = Wide::new(view.mesh, structure.preset)?;
+            return show(&wide.scene(&mapped)?, &wide.describe(), &wide.time());
+        }
+        let built = view.build(choice, structure.preset)?;
         let scene = match (&renumbered, &view.soup) {
             (_, Some(soup)) if choice.is_none() => built.scene(soup)?,
             (Some(triangles), _) => built.scene(triangles)?,
             _ => built.scene(&mapped)?,
         };
-        let body = Body::Mesh { view: &view, built: &built };
-        visit(&Subject { scene: &*scene, primitives: view.mesh.len(), body })
+        let time = format!("{} {}", built.name, built.time());
+        show(&*scene, &built.describe(view.mesh.len() as usize), &time)
     }
 }
 
@@ -144,7 +159,7 @@ impl Subject<'_> {
     /// What there is to say of the structure.
     pub fn structure(&self) -> String {
         match &self.body {
-            Body::Mesh { view, built } => built.describe(view.mesh.len() as usize),
+            Body::Mesh { structure, .. } => (*structure).to_owned(),
             Body::World { bytes, seconds: took, .. } => {
                 format!("two levels of the asset, {} bytes in all, checked in {}", count(*bytes), seconds(*took))
             }
@@ -154,7 +169,7 @@ impl Subject<'_> {
     /// The structure's name and how long it took.
     pub fn time(&self) -> String {
         match &self.body {
-            Body::Mesh { built, .. } => format!("{} {}", built.name, built.time()),
+            Body::Mesh { time, .. } => (*time).to_owned(),
             Body::World { seconds: took, .. } => format!("two levels checked in {}", seconds(*took)),
         }
     }
