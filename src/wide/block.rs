@@ -103,9 +103,9 @@ impl<'t> Block<'t> {
 }
 
 /// Writes a block, for which `to` has just the room.
-pub(super) fn write(to: &mut [u32], numbers: &[u32], triangles: &[Triangle]) {
+pub(super) fn write<'t>(to: &mut [u32], numbers: &[u32], triangles: impl Iterator<Item = &'t Triangle>) {
     let (mut corners, mut head) = (Corners::NONE, [0; HEAD]);
-    for (lane, &Triangle { a, b, c }) in triangles.iter().enumerate() {
+    for (lane, &Triangle { a, b, c }) in triangles.enumerate() {
         for (places, corner) in head.iter_mut().zip([a, b, c]) {
             let corner = [corner.x.to_bits(), corner.y.to_bits(), corner.z.to_bits()];
             *places |= (corners.add(corner).unwrap_or(0) as u32) << (3 * lane);

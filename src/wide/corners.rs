@@ -1,3 +1,5 @@
+use core::borrow::Borrow;
+
 use super::node::WIDTH;
 use crate::geometry::Triangle;
 
@@ -14,9 +16,10 @@ impl Corners {
     pub(super) const NONE: Self = Self { coordinates: [[u32::MAX; WIDTH]; 3], count: 0 };
 
     /// Those of `triangles`; none if they are more than a block has room for.
-    pub(super) fn of(triangles: impl IntoIterator<Item = Triangle>) -> Option<Self> {
+    pub(super) fn of<T: Borrow<Triangle>>(triangles: impl IntoIterator<Item = T>) -> Option<Self> {
         let mut corners = Self::NONE;
-        for Triangle { a, b, c } in triangles {
+        for triangle in triangles {
+            let &Triangle { a, b, c } = triangle.borrow();
             for corner in [a, b, c] {
                 corners.add([corner.x.to_bits(), corner.y.to_bits(), corner.z.to_bits()])?;
             }
@@ -25,7 +28,7 @@ impl Corners {
     }
 
     /// The place of a corner, which is added if it is a new one; none if there is no room.
-    #[inline]
+    #[inline(always)]
     pub(super) fn add(&mut self, corner: [u32; 3]) -> Option<usize> {
         let [x, y, z] = &self.coordinates;
         let mut found = 0;
@@ -38,8 +41,14 @@ impl Corners {
             return Some(found as usize - 1);
         }
         let place = self.count;
+        if place == WIDTH {
+            return None;
+        }
+        // Whole rows, too: what is written by parts and read as a whole has to be waited for.
         for (row, coordinate) in self.coordinates.iter_mut().zip(corner) {
-            *row.get_mut(place)? = coordinate;
+            for (at, word) in row.iter_mut().enumerate() {
+                *word = if at == place { coordinate } else { *word };
+            }
         }
         self.count += 1;
         Some(place)

@@ -1,24 +1,29 @@
 //! From the top down: a set is divided where the surface area heuristic expects the least work.
 
-use std::{convert::Infallible, mem, ops::ControlFlow, vec::Vec};
+use std::{boxed::Box, ops::ControlFlow, vec::Vec};
 
+use bytemuck::Zeroable;
 use rayon::prelude::*;
 
 use super::{
     MAX_DEPTH, Options,
     bins::{self, Bins, Grid, Rules},
+    branch::Branch,
     division::Division,
     item::Item,
-    node::Node,
     partition::CHUNK,
     progress::Monitor,
     spatial::{Cells, Plane, Spread},
     sweep::{self, Sorted},
-    task::{SHARED, Task},
+    task::{Parts, SHARED, Task},
 };
 use crate::{
     primitives::Primitives,
-    wide::{hull::Hull, node::WIDTH},
+    wide::{
+        binary::{Binary, BinaryNode},
+        hull::Hull,
+        node::WIDTH,
+    },
 };
 
 /// So few primitives fit into a leaf, whatever they are.
@@ -44,52 +49,43 @@ pub(super) struct Grower<'g, P: ?Sized, B> {
 }
 
 impl<P: Primitives + Sync + ?Sized, B: Send> Grower<'_, P, B> {
-    /// Builds the hierarchy of a set; its root.
-    pub(super) fn grow(&self, task: Task<'_>) -> ControlFlow<B, Node> {
+    /// Builds the hierarchy of a set.
+    pub(super) fn grow(&self, mut task: Task<'_>) -> ControlFlow<B, Branch> {
         let size = task.items.len();
-        if size <= ALONE {
-            let node = self.grow_alone(task);
+        let divided = if size > ALONE { self.divide(&mut task) } else { None };
+        let Some(parts) = divided else {
+            let mut part = Binary { nodes: Vec::with_capacity(2 * size), references: Vec::with_capacity(size) };
+            part.nodes.push(BinaryNode::zeroed());
+            self.grow_alone(task, 0, &mut part);
             self.monitor.advance(size as u32)?;
-            return ControlFlow::Continue(node);
-        }
-        self.monitor.advance(0)?;
-        self.inner(task, |[left, right]| {
-            let (left, right) = rayon::join(|| self.grow(left), || self.grow(right));
-            ControlFlow::Continue([left?, right?])
-        })
-    }
-
-    /// As [`grow`](Self::grow), on one thread and without a word.
-    fn grow_alone(&self, task: Task<'_>) -> Node {
-        let node = self.inner(task, |[left, right]| {
-            ControlFlow::<Infallible, _>::Continue([self.grow_alone(left), self.grow_alone(right)])
-        });
-        let ControlFlow::Continue(node) = node;
-        node
-    }
-
-    /// A node, its children made by `both`; or a leaf.
-    fn inner<R>(
-        &self,
-        mut task: Task<'_>,
-        both: impl FnOnce([Task<'_>; 2]) -> ControlFlow<R, [Node; 2]>,
-    ) -> ControlFlow<R, Node> {
-        let (hull, first, base) = (task.extent.hull, task.first, task.base);
-        let Some(parts) = self.divide(&mut task) else {
-            for (reference, item) in task.references.iter_mut().zip(&task.items[..task.count]) {
-                *reference = item.number();
-            }
-            return ControlFlow::Continue(Node::leaf(hull, first, task.count as u32));
+            return ControlFlow::Continue(Branch::Part(part));
         };
-        let (place, nodes) = mem::take(&mut task.nodes).split_at_mut(2);
-        task.nodes = nodes;
-        place.copy_from_slice(&both(task.split(&parts))?);
-        ControlFlow::Continue(Node::inner(hull, base))
+        self.monitor.advance(0)?;
+        let hull = task.extent.hull;
+        let [left, right] = task.split(&parts);
+        let (left, right) = rayon::join(|| self.grow(left), || self.grow(right));
+        ControlFlow::Continue(Branch::Pair(hull, Box::new([left?, right?])))
+    }
+
+    /// As [`grow`](Self::grow), on one thread and without a word; the root gets its `place` among the nodes.
+    fn grow_alone(&self, mut task: Task<'_>, place: usize, part: &mut Binary) {
+        let hull = task.extent.hull;
+        let Some(parts) = self.divide(&mut task) else {
+            part.nodes[place] = BinaryNode::leaf(hull, part.references.len(), task.count);
+            part.references.extend(task.items[..task.count].iter().map(Item::number));
+            return;
+        };
+        let first = part.nodes.len();
+        part.nodes[place] = BinaryNode::inner(hull, first);
+        part.nodes.extend([BinaryNode::zeroed(); 2]);
+        for (place, task) in (first..).zip(task.split(&parts)) {
+            self.grow_alone(task, place, part);
+        }
     }
 
     /// Divides a set; none if it is to be a leaf. Not inlined, so that what it needs is not on the stack of all above.
     #[inline(never)]
-    fn divide(&self, task: &mut Task<'_>) -> Option<super::task::Parts> {
+    fn divide(&self, task: &mut Task<'_>) -> Option<Parts> {
         Some(self.best(task)?.place(task, self.primitives))
     }
 

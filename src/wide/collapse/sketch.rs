@@ -11,8 +11,8 @@ use crate::wide::{
 pub(super) struct Sketch {
     /// Parents before their children.
     pub nodes: Vec<Sketched>,
-    /// The triangles of the blocks, in the order in which nodes name them.
-    pub triangles: Vec<u32>,
+    /// The references that become triangles of blocks, in the order in which nodes name them.
+    pub triangles: Vec<usize>,
     /// Words of all blocks.
     pub words: usize,
     /// Nodes below one another.
@@ -78,7 +78,7 @@ impl Sketch {
 
     /// Adds a block, and how many triangles it has.
     fn block(&mut self, plan: &Plan<'_>, node: usize) -> (Child, u8) {
-        let triangles = plan.triangles(node);
+        let triangles = plan.block(node);
         let corners = plan.corners(node);
         let block = Child::block(self.words, corners);
         self.words += block::words(corners, triangles.len());

@@ -1,10 +1,7 @@
 use super::{plan::Plan, sketch::Sketch};
-use crate::{
-    geometry::Triangle,
-    wide::{
-        block,
-        node::{Child, Node, WIDTH},
-    },
+use crate::wide::{
+    block,
+    node::{Child, Node, WIDTH},
 };
 
 /// The places of a part of the tree.
@@ -32,24 +29,24 @@ impl Places<'_> {
     }
 
     /// Writes nodes and blocks.
-    pub(super) fn write(self, plan: &Plan<'_>, sketch: &Sketch, triangle: &impl Fn(u32) -> Triangle) {
+    pub(super) fn write(self, plan: &Plan<'_>, sketch: &Sketch) {
         let (mut all, mut words) = (&sketch.triangles[..], self.words);
         for (node, sketched) in self.nodes.iter_mut().zip(&sketch.nodes) {
             *node = Node::empty(Child::block(0, 1));
             for (place, &child) in sketched.children.iter().enumerate().rev() {
                 let named = sketched.named[place];
-                let bounds = &plan.binary.nodes[child].bounds;
+                let bounds = &plan.binary.nodes[child].hull().bounds();
                 if !named.is_block() {
                     node.set(place, bounds, Child::node(named.0 + self.first_node as u32));
                     continue;
                 }
                 let corners = named.corners();
                 node.set(place, bounds, Child::block(named.first() + self.first_word, corners));
-                let (numbers, rest) = all.split_at(usize::from(sketched.counts[place]));
-                let (block, behind) = words.split_at_mut(block::words(corners, numbers.len()));
-                let triangles: heapless::Vec<Triangle, WIDTH> =
-                    numbers.iter().map(|&number| triangle(number)).collect();
-                block::write(block, numbers, &triangles);
+                let (places, rest) = all.split_at(usize::from(sketched.counts[place]));
+                let (block, behind) = words.split_at_mut(block::words(corners, places.len()));
+                let numbers: heapless::Vec<u32, WIDTH> =
+                    places.iter().map(|&place| plan.binary.references[place]).collect();
+                block::write(block, &numbers, places.iter().map(|&place| &plan.triangles[place]));
                 (all, words) = (rest, behind);
             }
             node.order();
