@@ -108,7 +108,7 @@ pub(super) fn write<'t>(to: &mut [u32], numbers: &[u32], triangles: impl Iterato
     for (lane, &Triangle { a, b, c }) in triangles.enumerate() {
         for (places, corner) in head.iter_mut().zip([a, b, c]) {
             let corner = [corner.x.to_bits(), corner.y.to_bits(), corner.z.to_bits()];
-            *places |= (corners.add(corner).unwrap_or(0) as u32) << (3 * lane);
+            *places |= (corners.add(corner) as u32) << (3 * lane);
         }
     }
     head[0] |= (0xff >> (WIDTH - numbers.len())) << ABOVE;

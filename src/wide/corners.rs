@@ -21,15 +21,15 @@ impl Corners {
         for triangle in triangles {
             let &Triangle { a, b, c } = triangle.borrow();
             for corner in [a, b, c] {
-                corners.add([corner.x.to_bits(), corner.y.to_bits(), corner.z.to_bits()])?;
+                corners.add([corner.x.to_bits(), corner.y.to_bits(), corner.z.to_bits()]);
             }
         }
-        Some(corners)
+        corners.checked()
     }
 
-    /// The place of a corner, which is added if it is a new one; none if there is no room.
+    /// The place of a corner, which is added if it is a new one and there is room.
     #[inline(always)]
-    pub(super) fn add(&mut self, corner: [u32; 3]) -> Option<usize> {
+    pub(super) fn add(&mut self, corner: [u32; 3]) -> usize {
         let [x, y, z] = &self.coordinates;
         let mut found = 0;
         // All places at once: no branches, and one of them at most is the same.
@@ -37,30 +37,29 @@ impl Corners {
             let is_same = (x[place] == corner[0]) & (y[place] == corner[1]) & (z[place] == corner[2]);
             found |= if is_same { place as u32 + 1 } else { 0 };
         }
-        if found > 0 {
-            return Some(found as usize - 1);
-        }
-        let place = self.count;
-        if place == WIDTH {
-            return None;
-        }
+        let place = if found == 0 { self.count } else { found as usize - 1 };
         // Whole rows, too: what is written by parts and read as a whole has to be waited for.
         for (row, coordinate) in self.coordinates.iter_mut().zip(corner) {
             for (at, word) in row.iter_mut().enumerate() {
                 *word = if at == place { coordinate } else { *word };
             }
         }
-        self.count += 1;
-        Some(place)
+        self.count += usize::from(found == 0);
+        place
+    }
+
+    /// If there was room for all.
+    fn checked(self) -> Option<Self> {
+        (self.count <= WIDTH).then_some(self)
     }
 
     /// Those of both, if there is room.
     pub(super) fn union(mut self, other: &Self) -> Option<Self> {
         let [x, y, z] = &other.coordinates;
         for place in 0..other.count {
-            self.add([x[place], y[place], z[place]])?;
+            self.add([x[place], y[place], z[place]]);
         }
-        Some(self)
+        self.checked()
     }
 
     /// How many there are.

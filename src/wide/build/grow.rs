@@ -10,11 +10,11 @@ use super::{
     bins::{self, Bins, Grid, Rules},
     branch::Branch,
     division::Division,
+    few::{self, Few},
     item::Item,
     partition::CHUNK,
     progress::Monitor,
     spatial::{Cells, Plane, Spread},
-    sweep::{self, Sorted},
     task::{Parts, SHARED, Task},
 };
 use crate::{
@@ -101,7 +101,7 @@ impl<P: Primitives + Sync + ?Sized, B: Send> Grower<'_, P, B> {
     /// How to divide a set at the least cost; none if it is to be a leaf.
     fn best(&self, task: &Task<'_>) -> Option<Division> {
         let must = !self.fits(&task.items[..task.count]);
-        if task.count <= 1 || (!must && (self.options.sorted == 0 || task.levels == 0)) {
+        if task.count <= 1 || (!must && (self.options.step_cost == f32::INFINITY || task.levels == 0)) {
             return None;
         }
         let scale = task.extent.hull.scale();
@@ -122,9 +122,9 @@ impl<P: Primitives + Sync + ?Sized, B: Send> Grower<'_, P, B> {
     /// The best way to divide a set without cuts, what both parts cost and their boxes.
     fn whole_items(&self, task: &Task<'_>, rules: &Rules) -> Option<(f32, [Hull; 2], Division)> {
         let items = &task.items[..task.count];
-        if items.len() <= (self.options.sorted as usize).min(sweep::MOST) {
-            let sorted = Sorted::best(items, rules)?;
-            return Some((sorted.cost, sorted.hulls, Division::Sorted(sorted)));
+        if items.len() <= (self.options.few as usize).clamp(2, few::MOST) {
+            let few = Few::best(items, rules)?;
+            return Some((few.cost, few.hulls, Division::Few(few)));
         }
         let count = (4 + items.len() / 16).min(self.options.bins as usize);
         let grid = Grid::new(task.extent.middles, count);

@@ -1,7 +1,7 @@
 //! The builder of the binary hierarchy, on all threads of the caller's pool.
 //!
-//! Boxes are gathered; sets of them are divided from the top down ([`grow`]) at borders of [`bins`], between sorted items
-//! ([`sweep`]) or at planes that cut triangles ([`spatial`]); then nodes find better places ([`reinsert`]), and all is put in
+//! Boxes are gathered; sets of them are divided from the top down ([`grow`]) at borders of [`bins`], in the best way if they are
+//! [`few`], or at planes that cut triangles ([`spatial`]); then nodes find better places ([`reinsert`]), and all is put in
 //! the order of a walk ([`layout`]).
 //!
 //! The same hierarchy for any number of threads: boxes are unions and counts are sums, which come out alike in any order;
@@ -15,6 +15,7 @@
 mod bins;
 mod branch;
 mod division;
+mod few;
 mod grow;
 mod item;
 mod layout;
@@ -23,7 +24,6 @@ mod partition;
 mod progress;
 mod reinsert;
 mod spatial;
-mod sweep;
 mod task;
 
 #[cfg(test)]

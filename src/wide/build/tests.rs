@@ -195,7 +195,7 @@ fn a_series_deeper_than_the_rules_stays_within_them() {
     let size = |i: i32| (2.0_f64.powi(125) / 14.2_f64.powi(i)) as f32;
     for count in [64, 66, 68] {
         let soup = Soup::new((0..count).map(|i| [Vec3::X * size(i); 3]));
-        for options in presets().into_iter().chain([Options { leaf_size: 8, sorted: 16, ..Options::balanced() }]) {
+        for options in presets().into_iter().chain([Options { leaf_size: 8, few: 6, ..Options::balanced() }]) {
             check(&built(&soup.mesh(), &options), &soup.mesh(), &options);
         }
     }
@@ -220,10 +220,10 @@ fn every_knob() {
             check(&built(&soup.mesh(), &options), &soup.mesh(), &options);
         }
     }
-    for (bins, sorted, reinsertions, reinserted, references) in
+    for (bins, few, reinsertions, reinserted, references) in
         [(0, 0, 1, 1.0, 0.0), (99, 99, 1, 99.0, 2.0), (2, 64, 0, -1.0, f32::NAN)]
     {
-        let options = Options { bins, sorted, reinsertions, reinserted, references, ..Options::fast() };
+        let options = Options { bins, few, reinsertions, reinserted, references, ..Options::fast() };
         let binary = built(&soup.mesh(), &options);
         answer_alike(&binary, &soup.mesh(), 20);
     }
