@@ -1,4 +1,4 @@
-use glam::{Vec4, Vec4Swizzles};
+use glam::{Mat4, Vec4, Vec4Swizzles};
 
 use crate::geometry::Aabb;
 
@@ -102,6 +102,15 @@ impl Hull {
     #[inline(always)]
     pub(super) fn scale(self) -> f32 {
         1.0 / self.size().truncate().max_element().max(f32::MIN_POSITIVE)
+    }
+
+    /// As [`weight`](Self::weight), of three boxes.
+    #[inline(always)]
+    pub(super) fn weights(hulls: &[Self; 3], scale: f32) -> Vec4 {
+        let sizes = hulls.map(|hull| hull.size() * scale + Vec4::splat(1.0e-6));
+        let by_axis = Mat4::from_cols(sizes[0], sizes[1], sizes[2], Vec4::ZERO).transpose();
+        let (x, y, z) = (by_axis.x_axis, by_axis.y_axis, by_axis.z_axis);
+        x * y + y * z + z * x
     }
 
     /// How likely rays meet it: half the surface, and a little for the lengths so that boxes without surface are told
