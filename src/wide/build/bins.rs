@@ -2,7 +2,7 @@
 
 use glam::Vec4;
 
-use super::item::Item;
+use super::{LEAF, item::Item};
 use crate::wide::hull::Hull;
 
 /// The most bins per axis.
@@ -133,8 +133,6 @@ fn add(counts: &mut [u32; 4], others: &[u32; 4]) {
 pub(super) struct Rules {
     /// What makes the set's longest edge a length of 1.
     pub(super) scale: f32,
-    /// Binary logarithm of the items that are tested at once.
-    pub(super) leaf: u32,
     /// The most items that a part may have, so that it can be divided further within the depth.
     pub(super) most: u32,
 }
@@ -143,21 +141,21 @@ impl Rules {
     /// Of a leaf with so many items in `hull`: one test for each full leaf.
     #[inline(always)]
     pub(super) fn cost(&self, hull: Hull, count: u32) -> f32 {
-        hull.weight(self.scale) * self.tests(count)
+        hull.weight(self.scale) * Self::tests(count)
     }
 
     /// As [`cost`](Self::cost), of three parts; no number if there are no items, and infinite if there are too many.
     #[inline(always)]
     fn costs(&self, hulls: &[Hull; 3], counts: &[u32; 4]) -> Vec4 {
-        let tests = counts.map(|count| if count > self.most { f32::INFINITY } else { self.tests(count) });
+        let tests = counts.map(|count| if count > self.most { f32::INFINITY } else { Self::tests(count) });
         Hull::weights(hulls, self.scale) * Vec4::from_array(tests)
     }
 
     /// How many full leaves there are at least.
     #[inline(always)]
-    fn tests(&self, count: u32) -> f32 {
+    fn tests(count: u32) -> f32 {
         // As a signed number, which all machines convert at once.
-        (count + (1 << self.leaf) - 1 >> self.leaf) as i32 as f32
+        count.div_ceil(LEAF) as i32 as f32
     }
 
     /// The same, had each item its own test.

@@ -6,7 +6,7 @@ use bytemuck::Zeroable;
 use rayon::prelude::*;
 
 use super::{
-    MAX_DEPTH, Options,
+    LEAF, MAX_DEPTH, Options,
     bins::{self, Bins, Grid, Rules},
     branch::Branch,
     division::Division,
@@ -22,12 +22,8 @@ use crate::{
     wide::{
         binary::{Binary, BinaryNode},
         hull::Hull,
-        node::WIDTH,
     },
 };
-
-/// So few primitives fit into a leaf, whatever they are.
-const SURE: u32 = 2;
 
 /// Sets of fewer items are left to one thread.
 const ALONE: usize = 4096;
@@ -39,12 +35,8 @@ const OVERLAP: f32 = 1.0e-3;
 pub(super) struct Grower<'g, P: ?Sized, B> {
     pub(super) primitives: &'g P,
     pub(super) options: &'g Options,
-    /// Binary logarithm of the most items in a leaf.
-    pub(super) leaf: u32,
     /// The box of everything.
     pub(super) whole: Hull,
-    /// Whether primitives of these numbers can be in one leaf.
-    pub(super) fits: &'g (dyn Fn(&[u32]) -> bool + Sync),
     pub(super) monitor: &'g Monitor<'g, B>,
 }
 
@@ -89,25 +81,15 @@ impl<P: Primitives + Sync + ?Sized, B: Send> Grower<'_, P, B> {
         Some(self.best(task)?.place(task, self.primitives))
     }
 
-    /// Whether items can be in one leaf.
-    fn fits(&self, items: &[Item]) -> bool {
-        if items.len() <= SURE as usize || items.len() > 1 << self.leaf {
-            return items.len() <= 1 << self.leaf;
-        }
-        let numbers: heapless::Vec<u32, WIDTH> = items.iter().map(Item::number).collect();
-        (self.fits)(&numbers)
-    }
-
     /// How to divide a set at the least cost; none if it is to be a leaf.
     fn best(&self, task: &Task<'_>) -> Option<Division> {
-        let must = !self.fits(&task.items[..task.count]);
+        let must = task.count > LEAF as usize;
         if task.count <= 1 || (!must && (self.options.step_cost == f32::INFINITY || task.levels == 0)) {
             return None;
         }
         let scale = task.extent.hull.scale();
-        let most = SURE.min(1 << self.leaf);
-        let below = u32::try_from(u64::from(most) << task.levels.saturating_sub(1).min(32)).unwrap_or(u32::MAX);
-        let rules = Rules { scale, leaf: self.leaf, most: below };
+        let below = u32::try_from(u64::from(LEAF) << task.levels.saturating_sub(1).min(32)).unwrap_or(u32::MAX);
+        let rules = Rules { scale, most: below };
         let whole = task.extent.hull.weight(scale);
         let pays = |cost: f32| must || cost + whole * self.options.step_cost < whole;
         let Some((cost, parts, division)) = self.whole_items(task, &rules) else {

@@ -51,15 +51,18 @@ use crate::{error::BuildError, primitives::Primitives};
 /// The greatest number of nodes below one another, the root not counted.
 pub(super) const MAX_DEPTH: u32 = 64;
 
+/// The most primitives in a leaf: the collapse has more to choose from than among blocks, and two triangles have room in one
+/// whatever corners they have.
+const LEAF: u32 = 2;
+
 /// A round of finding better places is so many times less work than there are primitives.
 const ROUND: u32 = 8;
 
 /// Builds a hierarchy over `primitives`, on the threads of the current `rayon` pool; `monitor` hears of progress, and may
-/// break it off. Leaves have two primitives at most, or more if `fits` says so of their numbers.
+/// break it off. Leaves have [`LEAF`] primitives at most.
 pub(super) fn build<P: Primitives + Sync + ?Sized, B: Send>(
     primitives: &P,
     options: &Options,
-    fits: &(dyn Fn(&[u32]) -> bool + Sync),
     monitor: &Monitor<'_, B>,
 ) -> Result<ControlFlow<B, Binary>, BuildError> {
     let items = gather(primitives)?;
@@ -75,7 +78,7 @@ pub(super) fn build<P: Primitives + Sync + ?Sized, B: Send>(
     for size in sizes.into_iter().flatten() {
         monitor.expect(size as u32 + options.reinsertions.saturating_mul(count / ROUND));
     }
-    let growth = Growth { primitives, options, fits, monitor };
+    let growth = Growth { primitives, options, monitor };
     let mut best: Option<Binary> = None;
     for size in sizes.into_iter().flatten() {
         let grown = match growth.grow(items.clone(), size) {
@@ -95,20 +98,18 @@ pub(super) fn build<P: Primitives + Sync + ?Sized, B: Send>(
 struct Growth<'g, P: ?Sized, B> {
     primitives: &'g P,
     options: &'g Options,
-    fits: &'g (dyn Fn(&[u32]) -> bool + Sync),
     monitor: &'g Monitor<'g, B>,
 }
 
 impl<P: Primitives + Sync + ?Sized, B: Send> Growth<'_, P, B> {
     /// The hierarchy over `items`, of at most `size` references; if nodes were put elsewhere, not in the order of a walk.
     fn grow(&self, mut items: Vec<Item>, size: usize) -> ControlFlow<B, Binary> {
-        let &Self { primitives, options, fits, monitor } = self;
+        let &Self { primitives, options, monitor } = self;
         let count = items.len();
         let extent = extent(&items);
         items.resize(size, Item::NOTHING);
         let mut spare: Vec<Item> = bytemuck::zeroed_vec(size);
-        let leaf = options.leaf_size.clamp(1, 8).next_power_of_two().ilog2();
-        let grower = Grower { primitives, options, leaf, whole: extent.hull, fits, monitor };
+        let grower = Grower { primitives, options, whole: extent.hull, monitor };
         let task = Task { items: &mut items, count, spare: &mut spare, extent, levels: MAX_DEPTH };
         let mut grown = grower.grow(task)?.join();
         if options.reinsertions > 0 {

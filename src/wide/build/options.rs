@@ -7,9 +7,6 @@
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// The most primitives in a leaf of the binary hierarchy, 1, 2, 4 or 8: fewer take longer, and leave the wide one more to
-    /// choose from.
-    pub leaf_size: u32,
     /// What a step from a node to its children costs, in tests of a leaf; if it is infinite, sets that fit into a leaf are not
     /// divided.
     pub step_cost: f32,
@@ -33,7 +30,6 @@ impl Options {
     #[must_use]
     pub const fn fast() -> Self {
         Self {
-            leaf_size: 2,
             step_cost: f32::INFINITY,
             bins: 16,
             few: 4,

@@ -7,7 +7,7 @@ use std::{
 
 use glam::Vec3;
 
-use super::{MAX_DEPTH, Monitor, Options, Progress, build};
+use super::{LEAF, MAX_DEPTH, Monitor, Options, Progress, build};
 use crate::{
     accel::List,
     error::BuildError,
@@ -47,17 +47,12 @@ fn presets() -> [Options; 3] {
     [Options::fast(), Options::balanced(), Options::best()]
 }
 
-/// Stands for a rule by which sets of more than two have no room in a leaf.
-fn fits(numbers: &[u32]) -> bool {
-    numbers.iter().sum::<u32>() % 4 > 0
-}
-
 fn try_build<P: Primitives + Sync>(
     primitives: &P,
     options: &Options,
     tell: impl Fn(Progress) -> ControlFlow<()> + Sync,
 ) -> Result<ControlFlow<(), Binary>, BuildError> {
-    build(primitives, options, &fits, &Monitor::new(&tell))
+    build(primitives, options, &Monitor::new(&tell))
 }
 
 fn built<P: Primitives + Sync>(primitives: &P, options: &Options) -> Binary {
@@ -88,9 +83,8 @@ fn check<P: Primitives>(binary: &Binary, primitives: &P, options: &Options) -> S
         let first = node.first();
         shape.depth = shape.depth.max(depths[place]);
         if node.count() > 0 {
-            assert!(node.count() <= options.leaf_size as usize && first == next_reference, "{node:?}");
+            assert!(node.count() <= LEAF as usize && first == next_reference, "{node:?}");
             next_reference += node.count();
-            assert!(node.count() <= 2 || fits(&references[first..next_reference]));
             shape.work += node.count() as u64 * u64::from(depths[place]);
             for &number in &references[first..next_reference] {
                 times[number as usize] += 1;
@@ -195,7 +189,7 @@ fn a_series_deeper_than_the_rules_stays_within_them() {
     let size = |i: i32| (2.0_f64.powi(125) / 14.2_f64.powi(i)) as f32;
     for count in [64, 66, 68] {
         let soup = Soup::new((0..count).map(|i| [Vec3::X * size(i); 3]));
-        for options in presets().into_iter().chain([Options { leaf_size: 8, few: 6, ..Options::balanced() }]) {
+        for options in presets().into_iter().chain([Options { few: 6, ..Options::balanced() }]) {
             check(&built(&soup.mesh(), &options), &soup.mesh(), &options);
         }
     }
@@ -214,9 +208,9 @@ fn a_few_primitives() {
 #[test]
 fn every_knob() {
     let soup = Soup::random(3000, 0.1);
-    for leaf_size in [1, 2, 4, 8] {
+    for few in 0..8 {
         for options in presets() {
-            let options = Options { leaf_size, ..options };
+            let options = Options { few, ..options };
             check(&built(&soup.mesh(), &options), &soup.mesh(), &options);
         }
     }

@@ -5,6 +5,7 @@
 //! written where it belongs when all sizes are known ([`mod@write`]). Each step by all threads; who does what depends on sizes alone.
 
 mod plan;
+mod repeats;
 mod sketch;
 mod write;
 

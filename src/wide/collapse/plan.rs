@@ -1,13 +1,13 @@
-use std::{vec, vec::Vec};
+use std::{ops::Range, vec, vec::Vec};
 
 use rayon::prelude::*;
 
+use super::repeats::Repeats;
 use crate::{
     geometry::Triangle,
     wide::{
         binary::{Binary, BinaryNode},
         block,
-        corners::Corners,
         node::{Node, WIDTH},
     },
 };
@@ -44,6 +44,7 @@ pub(super) struct Plan<'b> {
     pub binary: &'b Binary,
     /// That of each reference.
     pub triangles: Vec<Triangle>,
+    pub repeats: Repeats,
     parts: Vec<Part>,
     /// What makes the longest edge a length of 1, so that costs neither overflow nor vanish.
     scale: f32,
@@ -65,14 +66,15 @@ impl<'b> Plan<'b> {
         // All at once, because they have to be waited for.
         let numbers = binary.references.par_iter().with_min_len(ALONE);
         let triangles: Vec<Triangle> = numbers.map(|&number| triangle(number)).collect();
+        let repeats = Repeats::of(&triangles);
         let mut parts = vec![Part::default(); binary.nodes.len()];
         if let Some((root, below)) = parts.split_first_mut() {
             let whole = &binary.nodes[0];
             let price = price.max(0.0) * whole.hull().weight(scale) / binary.references.len() as f32;
-            let planner = Planner { binary, triangles: &triangles, scale, price };
+            let planner = Planner { binary, triangles: &triangles, repeats: &repeats, scale, price };
             *root = planner.part(whole, below, 1).0;
         }
-        Self { binary, triangles, parts, scale }
+        Self { binary, triangles, repeats, parts, scale }
     }
 
     /// How likely a ray meets a binary node.
@@ -123,23 +125,21 @@ impl<'b> Plan<'b> {
         children
     }
 
-    /// The references that become the triangles of a block.
-    pub(super) fn block(&self, mut node: usize) -> heapless::Vec<usize, WIDTH> {
-        let references = &self.binary.references;
+    /// The references below a node: depth first, so that they stand together.
+    pub(super) fn range(&self, mut node: usize) -> Range<usize> {
         let count = self.references(node) as usize;
-        // Depth first, so that they stand together.
         while self.binary.nodes[node].count() == 0 {
             node = self.binary.nodes[node].first();
         }
         let first = self.binary.nodes[node].first();
-        let mut kept = heapless::Vec::new();
-        for place in first..first + count {
-            // A triangle that was cut may be back in one piece.
-            if kept.iter().all(|&other: &usize| references[other] != references[place]) {
-                let _ = kept.push(place);
-            }
-        }
-        kept
+        first..first + count
+    }
+
+    /// Those of a block that become triangles of it, by their places: one that was cut may be back in one piece.
+    pub(super) fn numbers(&self, block: Range<usize>) -> impl Iterator<Item = (usize, u32)> {
+        let numbers = &self.binary.references[block];
+        let places = numbers.iter().copied().enumerate();
+        places.filter(|&(place, number)| !numbers[..place].contains(&number))
     }
 }
 
@@ -160,6 +160,7 @@ fn least([left, right]: [&[f32; WIDTH - 1]; 2], places: usize) -> f32 {
 struct Planner<'p> {
     binary: &'p Binary,
     triangles: &'p [Triangle],
+    repeats: &'p Repeats,
     scale: f32,
     /// What a byte costs.
     price: f32,
@@ -178,21 +179,20 @@ impl Planner<'_> {
         e.cross(f).length() * 0.5
     }
 
-    /// What is to be known of a node, and its corners if they have room in a block; `below` are the nodes below it, of which the
+    /// What is to be known of a node, and the first reference below it; `below` are the nodes below it, of which the
     /// first has the number `base`.
-    fn part(&self, node: &BinaryNode, below: &mut [Part], base: usize) -> (Part, Option<Corners>) {
+    fn part(&self, node: &BinaryNode, below: &mut [Part], base: usize) -> (Part, usize) {
         let weight = node.hull().weight(self.scale);
         if node.count() > 0 {
-            let triangles = &self.triangles[node.first()..][..node.count()];
-            let corners = Corners::of(triangles);
-            let count = corners.map_or(0, |corners| corners.count());
+            let range = node.first()..node.first() + node.count();
+            let count = self.repeats.count(range.clone());
             let costs = [self.block_cost(weight, count, node.count() as u32); WIDTH - 1];
-            let surface: f32 = triangles.iter().map(|triangle| self.surface(triangle)).sum();
+            let surface: f32 = self.triangles[range].iter().map(|triangle| self.surface(triangle)).sum();
             // Seen from all sides, a triangle's shadow is half its surface and a box's a quarter.
             let chance = (surface / weight).min(1.0);
             return (
                 Part { costs, chance, references: (count as u32) << Part::CORNERS | node.count() as u32 },
-                corners,
+                node.first(),
             );
         }
         let nodes = &self.binary.nodes[base..][..2];
@@ -204,27 +204,27 @@ impl Planner<'_> {
         let (of_left, of_right) = below.split_at_mut(border);
         let mut left = || self.part(&nodes[0], of_left, base);
         let mut right = || self.part(&nodes[1], of_right, base + border);
-        let ((left, corners), (right, others)) = if together { rayon::join(left, right) } else { (left(), right()) };
+        let ((left, first), (right, _)) = if together { rayon::join(left, right) } else { (left(), right()) };
         pair.copy_from_slice(&[left, right]);
         let references = left.references() + right.references();
-        let corners =
-            if references > MOST { None } else { corners.zip(others).and_then(|(all, others)| all.union(&others)) };
         let passes =
             |node: &BinaryNode, part: &Part| 1.0 - (node.hull().weight(self.scale) / weight).min(1.0) * part.chance;
         let chance = 1.0 - passes(&nodes[0], &left) * passes(&nodes[1], &right);
         let mut part = Part { costs: [0.0; WIDTH - 1], chance, references };
         let sides = [&left.costs, &right.costs];
         part.costs[0] = weight * NODE + self.price * size_of::<Node>() as f32 + least(sides, WIDTH);
-        if let Some(corners) = &corners {
-            let cost = self.block_cost(weight, corners.count(), references);
+        let corners =
+            if references > MOST { usize::MAX } else { self.repeats.count(first..first + references as usize) };
+        if corners <= WIDTH {
+            let cost = self.block_cost(weight, corners, references);
             if cost <= part.costs[0] {
                 part.costs[0] = cost;
-                part.references |= (corners.count() as u32) << Part::CORNERS;
+                part.references |= (corners as u32) << Part::CORNERS;
             }
         }
         for places in 2..WIDTH {
             part.costs[places - 1] = part.costs[places - 2].min(least(sides, places));
         }
-        (part, corners)
+        (part, first)
     }
 }
