@@ -102,7 +102,7 @@ impl Query {
             HitRecord { t: first.map_or(f32::INFINITY, |hit| hit.t), primitive }
         };
         match self {
-            Self::Closest => scene.closest_hits(&rays).into_iter().map(closest).collect(),
+            Self::Closest => scene.first_hits(&rays).into_iter().map(closest).collect(),
             Self::Any => scene.any_hits(&rays).into_iter().map(any).collect(),
             Self::Count => rays.iter().map(count).collect(),
         }

@@ -6,7 +6,7 @@ pub trait Queries: Caster + Sync {
     fn count(&self, ray: &Ray) -> (Option<Hit>, u32);
 
     /// The first hits of all rays: some structures are faster when they are asked together.
-    fn closest_hits(&self, rays: &[Ray]) -> Vec<Option<Hit>> {
+    fn first_hits(&self, rays: &[Ray]) -> Vec<Option<Hit>> {
         rays.iter().map(|ray| self.closest_hit(ray, 0)).collect()
     }
 

@@ -96,7 +96,7 @@ impl<P: Primitives + Sync> Queries for Shown<'_, P> {
         self.all.count(ray)
     }
 
-    fn closest_hits(&self, rays: &[Ray]) -> Vec<Option<Hit>> {
+    fn first_hits(&self, rays: &[Ray]) -> Vec<Option<Hit>> {
         let mut hits = vec![None; rays.len()];
         self.bvh.closest_hits(rays, &mut hits);
         hits
