@@ -67,7 +67,8 @@ impl Node {
 pub(super) struct Child(pub u32);
 
 impl Child {
-    const LEAF: u32 = 1 << 31;
+    /// Set for blocks.
+    pub(super) const LEAF: u32 = 1 << 31;
 
     const CORNERS: u32 = 28;
 
