@@ -23,7 +23,7 @@ use crate::{
 };
 
 /// Rays that walk at a time.
-const RUNNERS: usize = 16;
+const RUNNERS: usize = 32;
 
 /// Bytes of a tree that does not fit into the nearer caches.
 const LARGE: usize = 16 << 20;
@@ -44,7 +44,7 @@ struct Runner {
 }
 
 /// The runners that are at nodes, or at blocks.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy)]
 struct Places {
     /// Twice as many as there are, so that an index of five bits needs no check.
     list: [u8; 2 * RUNNERS],
@@ -52,6 +52,8 @@ struct Places {
 }
 
 impl Places {
+    const NONE: Self = Self { list: [0; 2 * RUNNERS], len: 0 };
+
     /// Adds a runner, if so.
     #[inline(always)]
     const fn add(&mut self, place: u8, really: bool) {
@@ -236,7 +238,7 @@ impl<S: Simd, A: Answers> Batch<'_, S, A> {
     #[inline(always)]
     fn run(&mut self) {
         while self.nodes.len + self.blocks.len > 0 {
-            let at_nodes = core::mem::take(&mut self.nodes);
+            let at_nodes = core::mem::replace(&mut self.nodes, Places::NONE);
             let mut touched = 0;
             for &place in at_nodes.list.iter().take(at_nodes.len) {
                 let Some(runner) = self.runners.get(usize::from(place)) else { break };
@@ -247,7 +249,7 @@ impl<S: Simd, A: Answers> Batch<'_, S, A> {
             for &place in at_nodes.list.iter().take(at_nodes.len) {
                 self.step(place, false);
             }
-            let at_blocks = core::mem::take(&mut self.blocks);
+            let at_blocks = core::mem::replace(&mut self.blocks, Places::NONE);
             let mut touched = 0;
             for &place in at_blocks.list.iter().take(at_blocks.len) {
                 let Some(runner) = self.runners.get(usize::from(place)) else { break };
@@ -272,7 +274,7 @@ fn run<S: Simd, A: Answers>(simd: S, tree: &Tree, rays: &[Ray], mut answers: A) 
     };
     let mut queue = Queue { rays, root, next: 0, answers };
     let mut runners = Vec::with_capacity(RUNNERS);
-    let (mut nodes, mut blocks) = (Places::default(), Places::default());
+    let (mut nodes, mut blocks) = (Places::NONE, Places::NONE);
     while runners.len() < RUNNERS {
         let Some(runner) = queue.begin() else { break };
         nodes.add(runners.len() as u8, !root.is_block());
