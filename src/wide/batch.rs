@@ -23,7 +23,7 @@ use crate::{
 };
 
 /// Rays that walk at a time.
-const RUNNERS: usize = 32;
+const RUNNERS: usize = 64;
 
 /// Bytes of a tree that does not fit into the nearer caches.
 const LARGE: usize = 16 << 20;
