@@ -8,6 +8,7 @@ use std::{vec, vec::Vec};
 use fearless_simd::{Bytes, Simd, SimdBase, f32x8, u32x8};
 
 use super::{
+    block::Block,
     coherence::Coherence,
     node::{CHILDREN, Child, ORDERS, WIDTH},
     packet::{self, Packet},
@@ -167,10 +168,11 @@ impl Runner {
     /// Looks at a block; whether there is more.
     #[inline(always)]
     fn test<S: Simd, A: Answers>(&mut self, simd: S, tree: &Tree, waiting: &Waiting<'_>) -> bool {
-        let Some(block) = tree.block(self.child) else { return false };
-        let query = Query { simd, tree, asker: &self.ray, shear: ShearLanes::new(simd, &self.ray) };
-        query.improve(block, &mut self.best);
-        self.behind = beyond(self.best.t);
+        if let Some(block) = tree.block(self.child) {
+            let query = Query { simd, tree, asker: &self.ray, shear: ShearLanes::new(simd, &self.ray) };
+            query.improve(block, &mut self.best);
+            self.behind = beyond(self.best.t);
+        }
         !(A::ANY && self.best.primitive != u32::MAX) && self.next(waiting, self.waiting)
     }
 }
@@ -253,9 +255,7 @@ impl<S: Simd, A: Answers> Batch<'_, S, A> {
             let mut touched = 0;
             for &place in at_blocks.list.iter().take(at_blocks.len) {
                 let Some(runner) = self.runners.get(usize::from(place)) else { break };
-                let at = runner.child.first();
-                let Some(block) = self.tree.blocks.get(at..at + 35) else { break };
-                touched ^= block[0] ^ block[16] ^ block[32];
+                touched ^= self.tree.block(runner.child).map_or(0, Block::touch);
             }
             core::hint::black_box(touched);
             for &place in at_blocks.list.iter().take(at_blocks.len) {

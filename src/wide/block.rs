@@ -45,6 +45,12 @@ impl<'t> Block<'t> {
         self.words[0] >> ABOVE
     }
 
+    /// Has the lines of the cache fetched that it is in.
+    #[inline(always)]
+    pub(super) const fn touch(self) -> u32 {
+        self.words[0] ^ self.words[16] ^ self.words[32]
+    }
+
     /// The number of a triangle.
     #[inline(always)]
     pub(super) fn number(self, lane: usize) -> u32 {

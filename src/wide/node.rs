@@ -22,10 +22,10 @@ pub(super) const CHILDREN: usize = 6;
 pub(super) const ORDERS: usize = 7;
 
 impl Node {
-    /// A node whose boxes no ray meets. If one is entered all the same, what is there is `child`.
-    pub(super) fn empty(child: Child) -> Self {
+    /// A node without children. Rays miss their boxes, unless they lie in planes or reach back where no axis decides.
+    pub(super) const fn empty() -> Self {
         let (min, max) = ([f32::INFINITY.to_bits(); WIDTH], [f32::NEG_INFINITY.to_bits(); WIDTH]);
-        Self { rows: [min, max, min, max, min, max, [child.0; WIDTH], [0; WIDTH]] }
+        Self { rows: [min, max, min, max, min, max, [Child::NONE.0; WIDTH], [0; WIDTH]] }
     }
 
     /// Puts a child into its place.
@@ -73,7 +73,10 @@ impl Child {
     const CORNERS: u32 = 28;
 
     /// Words in which blocks can begin, at even ones.
-    pub(super) const MAX_WORDS: usize = 2 << Self::CORNERS;
+    pub(super) const MAX_WORDS: usize = (2 << Self::CORNERS) - 2;
+
+    /// No child: a block where none can begin.
+    pub(super) const NONE: Self = Self(u32::MAX);
 
     /// A node.
     pub(super) const fn node(index: u32) -> Self {

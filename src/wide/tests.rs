@@ -2,7 +2,10 @@ use std::{vec, vec::Vec};
 
 use glam::Vec3;
 
-use super::{Options, WideBvh, node::CHILDREN};
+use super::{
+    Options, WideBvh,
+    node::{CHILDREN, Child},
+};
 use crate::{primitives::Mesh, testing::Random};
 
 /// Hills of `side` x `side` x 2 triangles, some corners of which are moved.
@@ -71,9 +74,8 @@ fn every_triangle_is_in_a_block_of_each_number_it_has() {
         let tree = WideBvh::new(&mesh, &options).unwrap().tree;
         let mut found = vec![0; triangles.len()];
         for &child in tree.nodes.iter().flat_map(|node| &node.rows[CHILDREN]) {
-            let child = super::node::Child(child);
-            // Empty places name the first block, of one corner.
-            if !child.is_block() || child.corners() < 3 {
+            let child = Child(child);
+            if !child.is_block() || child == Child::NONE {
                 continue;
             }
             let block = tree.block(child).unwrap();

@@ -71,7 +71,7 @@ impl Tree {
         size_of_val(&self.nodes[..]) + size_of_val(&self.blocks[..]) + size_of_val(&self.masks[..])
     }
 
-    /// The block, and what lies behind it.
+    /// The block, and what lies behind it; none if there is no child.
     #[inline(always)]
     pub(super) fn block(&self, child: Child) -> Option<Block<'_>> {
         let words = self.blocks.get(child.first()..)?.first_chunk()?;

@@ -126,8 +126,7 @@ pub(super) fn closest_below<S: Simd, R: Asker>(
                 child = descend(node, &met, &mut stack);
                 continue;
             }
-        } else {
-            let Some(block) = tree.block(child) else { break };
+        } else if let Some(block) = tree.block(child) {
             let before = best.t;
             query.improve(block, &mut best);
             if best.t < before {
@@ -169,8 +168,7 @@ pub(super) fn any_below<S: Simd, R: Asker>(
                 child = descend_in_order(node, lanes, &mut stack);
                 continue;
             }
-        } else {
-            let Some(block) = tree.block(child) else { return false };
+        } else if let Some(block) = tree.block(child) {
             let mut best = until;
             query.improve(block, &mut best);
             if best.primitive != until.primitive {

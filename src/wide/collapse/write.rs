@@ -35,7 +35,7 @@ impl Places<'_> {
     pub(super) fn write(self, plan: &Plan<'_>, sketch: &Sketch, triangle: &impl Fn(u32) -> Triangle) {
         let (mut all, mut words) = (&sketch.triangles[..], self.words);
         for (node, sketched) in self.nodes.iter_mut().zip(&sketch.nodes) {
-            *node = Node::empty(Child::block(0, 1));
+            *node = Node::empty();
             for (place, &child) in sketched.children.iter().enumerate().rev() {
                 let named = sketched.named[place];
                 let bounds = &plan.binary.nodes[child].bounds;
