@@ -45,7 +45,7 @@ impl<'t> Block<'t> {
         self.words[0] >> ABOVE
     }
 
-    /// Has the lines of the cache fetched that it is in.
+    /// Something of each line of the cache.
     #[inline(always)]
     pub(super) const fn touch(self) -> u32 {
         self.words[0] ^ self.words[16] ^ self.words[32]

@@ -28,6 +28,12 @@ impl Node {
         Self { rows: [min, max, min, max, min, max, [Child::NONE.0; WIDTH], [0; WIDTH]] }
     }
 
+    /// Something of each line.
+    #[inline(always)]
+    pub(super) const fn touch(&self) -> u32 {
+        self.rows[0][0] ^ self.rows[2][0] ^ self.rows[4][0] ^ self.rows[6][0]
+    }
+
     /// Puts a child into its place.
     pub(super) fn set(&mut self, place: usize, bounds: &Aabb, child: Child) {
         let (min, max) = (bounds.min, bounds.max);

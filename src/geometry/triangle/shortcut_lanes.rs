@@ -98,11 +98,8 @@ pub(crate) fn range<S: Simd>(simd: S, [x, y, z]: [f32x8<S>; 3], a: [f32; 3], ray
         let (d, a) = (f64::from(direction[axis]), f64::from(a[axis]) - f64::from(origin[axis]));
         f64x4::load_array(simd, [d, d, d, a])
     };
-    let Bounded { value, error } = determinant(
-        &[first(0), first(1), first(2)],
-        &[x.0 - ox, y.0 - oy, z.0 - oz],
-        &[x.1 - ox, y.1 - oy, z.1 - oz],
-    );
+    let Bounded { value, error } =
+        determinant(&[first(0), first(1), first(2)], &[x.0 - ox, y.0 - oy, z.0 - oz], &[x.1 - ox, y.1 - oy, z.1 - oz]);
     let bounded = |lane: usize| shortcut::Bounded { value: value.as_array()[lane], error: error.as_array()[lane] };
     shortcut::range([bounded(0), bounded(1), bounded(2)], bounded(3))
 }
