@@ -13,13 +13,14 @@ mod open;
 mod options;
 mod order;
 mod resolution;
+mod sweep;
 mod traverse;
 
 pub use met::Met;
 pub use options::{Form, Options};
 pub use traverse::GridTraversal;
 
-use self::cells::Cells;
+use self::{cells::Cells, sweep::Course};
 use super::{Accelerator, Cell, Hierarchy, Inside, Leaf, leaf::References};
 use crate::{
     arena::Arena,
@@ -63,6 +64,7 @@ pub struct Grid<'a> {
     resolution: [u32; 3],
     bounds: Aabb,
     lattice: Lattice,
+    course: Course,
 }
 
 impl<'a> Grid<'a> {
@@ -104,6 +106,7 @@ impl<'a> Grid<'a> {
             resolution: [1; 3],
             bounds: Aabb::EMPTY,
             lattice: Lattice::over(&Aabb::EMPTY, [2; 3]),
+            course: Course::new(&Lattice::over(&Aabb::EMPTY, [2; 3]), &Aabb::EMPTY),
         }
     }
 
@@ -140,6 +143,11 @@ impl<'a> Accelerator for Grid<'a> {
     #[inline]
     fn traverse(&self, ray: &PreparedRay) -> GridTraversal<'a> {
         GridTraversal::new(self, ray)
+    }
+
+    #[inline(always)]
+    fn visit(&self, ray: &PreparedRay, t_max: f32, visit: impl FnMut(Met<'a>) -> Option<f32>) {
+        self.sweep(ray, t_max, visit);
     }
 }
 

@@ -7,6 +7,7 @@ use super::{
     cells::{Cells, block_words, narrow_offsets, narrow_references, number_words, reference_words},
     cover::Frame,
     options::Form,
+    sweep::Course,
 };
 use crate::{
     accel::{Malformed, Reason, leaf::References},
@@ -143,6 +144,7 @@ impl<'a> Grid<'a> {
             resolution: header.resolution,
             bounds: header.bounds,
             lattice: frame.lattice,
+            course: Course::new(&frame.lattice, &header.bounds),
         })
     }
 }
