@@ -15,16 +15,16 @@ pub struct Met<'a> {
 const FOURTH_FIRST: u32 = if cfg!(target_endian = "big") { 3 } else { 0 };
 
 impl<'a> Met<'a> {
-    /// Those of `count` references from the one at `first` that share a bit with `on_the_way`, if there are any.
+    /// Those of the references from `first` up to `end` that share a bit with `on_the_way`, if there are any.
     #[inline(always)]
     pub(super) fn of(
         references: References<'a>,
         octants: &'a [u8],
         first: u32,
-        count: u32,
+        end: u32,
         on_the_way: u32,
     ) -> Option<Self> {
-        let mut met = Self { next: first, end: first.saturating_add(count), references, octants, on_the_way };
+        let mut met = Self { next: first, end, references, octants, on_the_way };
         met.next = met.ahead()?;
         Some(met)
     }

@@ -78,39 +78,37 @@ struct Crossings {
 }
 
 impl Crossings {
-    /// Crosses the next plane: where that was, and what is added to the number of the cell.
+    /// The octants of a cell in the halves along this axis that the ray may meet between these parameters.
     #[inline(always)]
-    fn cross(&mut self) -> (f32, u32) {
-        let t = self.next;
-        self.next = t + self.step;
-        (t, self.stride)
-    }
-}
-
-/// Octants of a cell by an axis: where the ray crosses the plane in its middle, and those that it enters first.
-type Halves = (f32, u32);
-
-/// The octants of a cell, which the ray enters and leaves at these parameters, that it may meet.
-#[inline(always)]
-fn octants([x, y, z]: [Halves; 3], enter: f32, exit: f32, margin: f32) -> u32 {
-    let (enter, exit) = (enter - margin, exit + margin);
-    let mut octants = 0xff;
-    for (middle, near) in [x, y, z] {
+    fn halves(&self, enter: f32, exit: f32) -> u32 {
+        let middle = self.next - 0.5 * self.step;
         if middle < enter {
-            octants &= !near;
+            !self.near
         } else if middle > exit {
-            octants &= near;
+            self.near
+        } else {
+            0xff
         }
     }
-    for ((a, a_near), (b, b_near)) in [(x, y), (y, z), (z, x)] {
-        if a > b + margin {
-            octants &= !b_near | a_near;
-        } else if b > a + margin {
-            octants &= !a_near | b_near;
+
+    /// Crosses the next plane.
+    #[inline(always)]
+    fn cross(&mut self, clear: &mut f32, end: f32, margin: f32, at: &mut u32) -> Crossed {
+        let t = self.next;
+        if !(*clear < t) {
+            return Crossed::Close;
         }
+        self.next = t + self.step;
+        if t > end {
+            return Crossed::End(t);
+        }
+        *clear = t + margin;
+        *at = at.wrapping_add(self.stride);
+        Crossed::Clear
     }
-    octants
 }
+
+enum Crossed { Clear, Close, End(f32) }
 
 impl<'a> Grid<'a> {
     /// See [`Accelerator::visit`].
@@ -137,18 +135,18 @@ impl<'a> Grid<'a> {
         if enter > exit + margin {
             return;
         }
-        let mut enter = enter - margin;
+        let enter = enter - margin;
         let mut at = 0_u32;
         let d = ray.ray().direction;
-        let mut crossings = |(near, _, step): (f32, f32, f32), spacing: &Spacing, view: &AxisView, d: f32, lower: u32| {
-            let before = ((enter - near) * (spacing.inverse * d.abs())) as u32;
-            let (first, stride, near_octants) = if view.ascends() {
+        let mut crossings = |(first, _, step): (f32, f32, f32), spacing: &Spacing, view: &AxisView, d: f32, lower: u32| {
+            let before = ((enter - first) * (spacing.inverse * d.abs())) as u32;
+            let (number, stride, near) = if view.ascends() {
                 (0, spacing.stride, lower)
             } else {
                 (spacing.end, spacing.stride.wrapping_neg(), 0xff ^ lower)
             };
-            at = at.wrapping_add(first).wrapping_add(before.wrapping_mul(stride));
-            Crossings { next: (near + step) + before as i32 as f32 * step, step, stride, near: near_octants }
+            at = at.wrapping_add(number).wrapping_add(before.wrapping_mul(stride));
+            Crossings { next: (first + step) + before as i32 as f32 * step, step, stride, near }
         };
         let mut x = crossings(sx, x, vx, d.x, 0x0f);
         let mut y = crossings(sy, y, vy, d.y, 0x33);
@@ -161,12 +159,17 @@ impl<'a> Grid<'a> {
             _ => return self.walk(ray, t_max, &mut visit),
         };
         let mut end = least(beyond(t_max) + margin, behind);
+        // Crossings before this are close to the last one.
+        let mut clear = enter + margin;
         loop {
-            if let Some(&last) = ends.get(at as usize) && let Some(&first) = firsts.get(at as usize) && first != last {
+            if let Some(&last) = ends.get(at as usize)
+                && let Some(&first) = firsts.get(at as usize)
+                && first != last
+            {
                 let exit = least(least(x.next, y.next), z.next);
-                let halves = |c: &Crossings| (c.next - 0.5 * c.step, c.near);
-                let octants = octants([halves(&x), halves(&y), halves(&z)], enter, exit, margin);
-                if let Some(met) = Met::of(self.references, self.octants, u32::from(first), u32::from(last) - u32::from(first), octants) {
+                let (from, to) = (clear - 2.0 * margin, exit + margin);
+                let octants = x.halves(from, to) & y.halves(from, to) & z.halves(from, to);
+                if let Some(met) = Met::of(self.references, self.octants, first.into(), last.into(), octants) {
                     match visit(met) {
                         Some(t) => t_max = t,
                         None => return,
@@ -174,25 +177,24 @@ impl<'a> Grid<'a> {
                     end = least(beyond(t_max) + margin, behind);
                 }
             }
-            let (t, stride) = if y.next < x.next {
-                if z.next < y.next { z.cross() } else { y.cross() }
+            let crossed = if y.next < x.next {
+                if z.next < y.next { z.cross(&mut clear, end, margin, &mut at) } else { y.cross(&mut clear, end, margin, &mut at) }
             } else if z.next < x.next {
-                z.cross()
+                z.cross(&mut clear, end, margin, &mut at)
             } else {
-                x.cross()
+                x.cross(&mut clear, end, margin, &mut at)
             };
-            if !(enter + margin < t) {
-                break;
-            }
-            if t > end {
+            match crossed {
+                Crossed::Clear => {}
+                Crossed::Close => break,
                 // Behind what is wanted, or out of the last cell.
-                if t > beyond(t_max) + margin || least(least(x.next, y.next), z.next) > t + margin {
-                    return;
+                Crossed::End(t) => {
+                    if t > beyond(t_max) + margin || least(least(x.next, y.next), z.next) > t + margin {
+                        return;
+                    }
+                    break;
                 }
-                break;
             }
-            at = at.wrapping_add(stride);
-            enter = t;
         }
         self.walk(ray, t_max, &mut visit);
     }
