@@ -98,17 +98,17 @@ impl Crossings {
         if !(*clear < t) {
             return Crossed::Close;
         }
-        self.next = t + self.step;
-        if t > end {
-            return Crossed::End(t);
-        }
         *clear = t + margin;
+        if t > end {
+            return Crossed::End;
+        }
+        self.next = t + self.step;
         *at = at.wrapping_add(self.stride);
         Crossed::Clear
     }
 }
 
-enum Crossed { Clear, Close, End(f32) }
+enum Crossed { Clear, Close, End }
 
 impl<'a> Grid<'a> {
     /// See [`Accelerator::visit`].
@@ -187,9 +187,11 @@ impl<'a> Grid<'a> {
             match crossed {
                 Crossed::Clear => {}
                 Crossed::Close => break,
-                // Behind what is wanted, or out of the last cell.
-                Crossed::End(t) => {
-                    if t > beyond(t_max) + margin || least(least(x.next, y.next), z.next) > t + margin {
+                Crossed::End => {
+                    // Behind what is wanted, or out of the last cell with no other crossing near.
+                    let is_near = |t: f32| u32::from(!(t > clear));
+                    let near = [&x, &y, &z].map(|line| is_near(line.next) + is_near(line.next + line.step));
+                    if end < behind || near[0] + near[1] + near[2] == 1 {
                         return;
                     }
                     break;
