@@ -11,20 +11,40 @@ use crate::{
     math::{greatest, least},
 };
 
-/// Planes of an axis, equally far apart up to roundings, and the numbers of the cells between them.
+/// Planes of an axis, equally far apart up to roundings.
 #[derive(Clone, Copy, Debug)]
 struct Spacing {
-    /// The first plane and the last one.
-    first: f32,
-    last: f32,
+    /// As rays see them that ascend, and that descend.
+    sides: [Side; 2],
     /// The distance from one to the next, and one over that.
     width: f32,
     inverse: f32,
     /// The distance from the first to the last.
     extent: f32,
-    /// What is added to a cell's number for the next cell, and for the last one to that of the first.
+}
+
+impl Spacing {
+    /// Where a ray crosses the first plane, and where the last.
+    #[inline(always)]
+    fn crossings(&self, view: &AxisView) -> (Crossings<'_>, f32) {
+        let side = &self.sides[(view.entry.to_bits() >> 31) as usize];
+        let inverse = view.entry.abs();
+        let next = (side.plane - view.origin) * view.entry;
+        (Crossings { next, step: self.width * inverse, stride: side.stride, side }, next + self.extent * inverse)
+    }
+}
+
+/// What rays meet first along an axis.
+#[derive(Clone, Copy, Debug)]
+struct Side {
+    /// The first plane.
+    plane: f32,
+    /// What the number of the cell behind it has from this axis, and what is added for the next cell.
+    number: u32,
     stride: u32,
-    end: u32,
+    /// The octants in the first half of a cell, and in the second.
+    near: u32,
+    far: u32,
 }
 
 /// A grid's planes as sweeps want them.
@@ -41,51 +61,51 @@ pub(super) struct Course {
 impl Course {
     pub(super) fn new(lattice: &Lattice, bounds: &Aabb) -> Self {
         let [nx, ny, nz] = Axis::ALL.map(|axis| lattice.last(axis) / 2);
-        let spacing = |axis: Axis, count: u32, stride: u32| {
-            let (first, step) = lattice.along(axis as u32);
-            Spacing {
-                first,
-                last: lattice.position(axis, lattice.last(axis)),
-                width: 2.0 * step,
-                inverse: 0.5 / step,
-                extent: lattice.extent(axis),
-                stride,
-                end: count.wrapping_sub(1).wrapping_mul(stride),
-            }
+        let spacing = |axis: Axis, count: u32, stride: u32, lower: u32| {
+            let (plane, step) = lattice.along(axis as u32);
+            let ascending = Side { plane, number: 0, stride, near: lower, far: 0xff ^ lower };
+            let descending = Side {
+                plane: lattice.position(axis, lattice.last(axis)),
+                number: count.wrapping_sub(1).wrapping_mul(stride),
+                stride: stride.wrapping_neg(),
+                near: 0xff ^ lower,
+                far: lower,
+            };
+            let (width, inverse) = (2.0 * step, 0.5 / step);
+            Spacing { sides: [ascending, descending], width, inverse, extent: lattice.extent(axis) }
         };
+        let axes = [
+            spacing(Axis::X, nx, ny.wrapping_mul(nz), 0x0f),
+            spacing(Axis::Y, ny, nz, 0x33),
+            spacing(Axis::Z, nz, 1, 0x55),
+        ];
         let steps = nx.max(ny).max(nz) as f32;
         let farthest = greatest(bounds.min.abs().max_element(), bounds.max.abs().max_element());
         Self {
-            axes: [
-                spacing(Axis::X, nx, ny.wrapping_mul(nz)),
-                spacing(Axis::Y, ny, nz),
-                spacing(Axis::Z, nz, 1),
-            ],
-            relative: 1.0 / 32_768.0 + steps * (1.0 / 2_097_152.0),
+            axes,
+            relative: 1.0 / 32_768.0 + steps * (1.0 / 4_194_304.0),
             absolute: farthest * (1.0 / 262_144.0) + f32::MIN_POSITIVE,
         }
     }
 }
 
 /// Where a ray crosses the planes of an axis.
-struct Crossings {
+struct Crossings<'c> {
     next: f32,
     step: f32,
-    /// What is added to the number of the cell.
     stride: u32,
-    /// The octants in the half of a cell that the ray enters first.
-    near: u32,
+    side: &'c Side,
 }
 
-impl Crossings {
+impl Crossings<'_> {
     /// The octants of a cell in the halves along this axis that the ray may meet between these parameters.
     #[inline(always)]
     fn halves(&self, enter: f32, exit: f32) -> u32 {
         let middle = self.next - 0.5 * self.step;
         if middle < enter {
-            !self.near
+            self.side.far
         } else if middle > exit {
-            self.near
+            self.side.near
         } else {
             0xff
         }
@@ -114,22 +134,13 @@ impl<'a> Grid<'a> {
     /// See [`Accelerator::visit`].
     #[inline(always)]
     pub(super) fn sweep(&self, ray: &PreparedRay, mut t_max: f32, mut visit: impl FnMut(Met<'a>) -> Option<f32>) {
-        if self.primitives == 0 {
-            return;
-        }
         let Course { axes: [x, y, z], relative, absolute } = &self.course;
         let [vx, vy, vz, _] = &ray.views;
-        // Where the ray enters the lattice along an axis, and how long it stays.
-        let slab = |spacing: &Spacing, view: &AxisView| {
-            let near = if view.ascends() { spacing.first } else { spacing.last };
-            let inverse = view.entry.abs();
-            ((near - view.origin) * view.entry, spacing.extent * inverse, spacing.width * inverse)
-        };
-        let (sx, sy, sz) = (slab(x, vx), slab(y, vy), slab(z, vz));
+        let ((mut x, x_exit), (mut y, y_exit), (mut z, z_exit)) = (x.crossings(vx), y.crossings(vy), z.crossings(vz));
         let t_min = ray.ray().t_min;
-        let enter = greatest(greatest(greatest(sx.0, t_min), sy.0), sz.0);
-        let exit = least(least(sx.0 + sx.1, sy.0 + sy.1), sz.0 + sz.1);
-        let margin = (enter.abs() + exit.abs()) * relative
+        let enter = greatest(greatest(greatest(x.next, t_min), y.next), z.next);
+        let exit = least(least(x_exit, y_exit), z_exit);
+        let margin = greatest(exit, -enter) * relative
             + ((vx.exit.abs() + vy.exit.abs()) + vz.exit.abs()) * absolute
             + ((t_min.abs() - t_min) * (1.0 / 4096.0) + 4.0 * f32::MIN_POSITIVE);
         if enter > exit + margin {
@@ -137,27 +148,18 @@ impl<'a> Grid<'a> {
         }
         let enter = enter - margin;
         let mut at = 0_u32;
-        let d = ray.ray().direction;
-        let mut crossings = |(first, _, step): (f32, f32, f32), spacing: &Spacing, view: &AxisView, d: f32, lower: u32| {
-            let before = ((enter - first) * (spacing.inverse * d.abs())) as u32;
-            let (number, stride, near) = if view.ascends() {
-                (0, spacing.stride, lower)
-            } else {
-                (spacing.end, spacing.stride.wrapping_neg(), 0xff ^ lower)
-            };
-            at = at.wrapping_add(number).wrapping_add(before.wrapping_mul(stride));
-            Crossings { next: (first + step) + before as i32 as f32 * step, step, stride, near }
-        };
-        let mut x = crossings(sx, x, vx, d.x, 0x0f);
-        let mut y = crossings(sy, y, vy, d.y, 0x33);
-        let mut z = crossings(sz, z, vz, d.z, 0x55);
+        for (line, axis) in [&mut x, &mut y, &mut z].into_iter().zip(Axis::ALL) {
+            let per_cell = self.course.axes[axis as usize].inverse * axis.of(ray.ray().direction).abs();
+            let before = ((enter - line.next) * per_cell) as u32;
+            at = at.wrapping_add(line.side.number).wrapping_add(before.wrapping_mul(line.stride));
+            line.next = (line.next + line.step) + before as i32 as f32 * line.step;
+        }
         let behind = exit - 0.5 * margin;
-        let (firsts, ends) = match self.cells.offsets {
-            References::Narrow(offsets) if self.cells.blocks.is_empty() => {
-                (offsets, offsets.get(1..).unwrap_or_default())
-            }
-            _ => return self.walk(ray, t_max, &mut visit),
+        let firsts = match self.cells.offsets {
+            References::Narrow(offsets) if self.cells.blocks.is_empty() => offsets,
+            _ => &[],
         };
+        let Some((_, ends)) = firsts.split_first() else { return self.walk(ray, t_max, &mut visit) };
         let mut end = least(beyond(t_max) + margin, behind);
         // Crossings before this are close to the last one.
         let mut clear = enter + margin;
