@@ -15,6 +15,18 @@ pub struct Met<'a> {
 const FOURTH_FIRST: u32 = if cfg!(target_endian = "big") { 3 } else { 0 };
 
 impl<'a> Met<'a> {
+    /// Those of the references from `first` up to `end` that share a bit with `on_the_way`.
+    #[inline(always)]
+    pub(super) const fn new(
+        references: References<'a>,
+        octants: &'a [u8],
+        first: u32,
+        end: u32,
+        on_the_way: u32,
+    ) -> Self {
+        Self { next: first, end, references, octants, on_the_way }
+    }
+
     /// Those of the references from `first` up to `end` that share a bit with `on_the_way`, if there are any.
     #[inline(always)]
     pub(super) fn of(
@@ -24,7 +36,7 @@ impl<'a> Met<'a> {
         end: u32,
         on_the_way: u32,
     ) -> Option<Self> {
-        let mut met = Self { next: first, end, references, octants, on_the_way };
+        let mut met = Self::new(references, octants, first, end, on_the_way);
         met.next = met.ahead()?;
         Some(met)
     }

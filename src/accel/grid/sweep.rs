@@ -4,7 +4,7 @@
 //! crossings come in their order if each is later than the last by more than a margin. Where one is not, the cursor
 //! begins anew and decides everything.
 
-use super::{Grid, met::Met};
+use super::{Grid, cells::OFFSET, met::Met};
 use crate::{
     accel::{Accelerator, leaf::References, visit_by},
     geometry::{Aabb, Axis, AxisView, Lattice, PreparedRay, beyond},
@@ -155,23 +155,23 @@ impl<'a> Grid<'a> {
             line.next = (line.next + line.step) + before as i32 as f32 * line.step;
         }
         let behind = exit - 0.5 * margin;
-        let firsts = match self.cells.offsets {
-            References::Narrow(offsets) if self.cells.blocks.is_empty() => offsets,
-            _ => &[],
+        let cells = match self.cells.offsets {
+            References::Wide(cells) if self.cells.mask == OFFSET => cells,
+            _ => return self.walk(ray, t_max, &mut visit),
         };
-        let Some((_, ends)) = firsts.split_first() else { return self.walk(ray, t_max, &mut visit) };
         let mut end = least(beyond(t_max) + margin, behind);
         // Crossings before this are close to the last one.
         let mut clear = enter + margin;
         loop {
-            if let Some(&last) = ends.get(at as usize)
-                && let Some(&first) = firsts.get(at as usize)
-                && first != last
+            if let Some(&cell) = cells.get(at as usize)
+                && cell > OFFSET
             {
                 let exit = least(least(x.next, y.next), z.next);
                 let (from, to) = (clear - 2.0 * margin, exit + margin);
                 let octants = x.halves(from, to) & y.halves(from, to) & z.halves(from, to);
-                if let Some(met) = Met::of(self.references, self.octants, first.into(), last.into(), octants) {
+                if octants & cell >> 24 != 0 {
+                    let end_of = cells.get(at.wrapping_add(1) as usize).map_or(0, |&cell| cell & OFFSET);
+                    let met = Met::new(self.references, self.octants, cell & OFFSET, end_of, octants);
                     match visit(met) {
                         Some(t) => t_max = t,
                         None => return,
