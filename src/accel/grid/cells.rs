@@ -80,7 +80,7 @@ impl Cells<'_> {
 
     /// How many occupied cells there are before an occupied one.
     #[inline(always)]
-    fn rank(&self, cell: u32) -> Option<u32> {
+    pub(super) fn rank(&self, cell: u32) -> Option<u32> {
         let word = (cell >> 5) as usize * 2;
         let bits = *self.blocks.get(word)?;
         let bit = 1 << (cell & 31);

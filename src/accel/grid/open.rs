@@ -6,6 +6,7 @@ use super::{
     Grid, HEADER_WORDS, MAX_COUNT, MAX_RESOLUTION,
     cells::{Cells, OFFSET, block_words, narrow_offsets, narrow_references, number_words, reference_words},
     cover::Frame,
+    met::octants_of,
     options::Form,
     sweep::Course,
 };
@@ -105,18 +106,26 @@ impl<'a> Grid<'a> {
         if entries != header.entries as usize {
             return Err((2, Reason::Header));
         }
-        let mut least = 0;
+        let (mut least, mut said) = (0, 0);
         for entry in 0..=header.entries {
             let word = self.cells.offsets.get(entry);
             let offset = word & self.cells.mask;
             let first = entry == 0 && offset != 0;
             let last = entry == header.entries && offset != header.references;
-            if first || last || offset < least {
+            if first || last || offset < least || offset > header.references {
                 return Err((HEADER_WORDS + self.cells.blocks.len(), Reason::References));
+            }
+            if header.form == Form::Octants {
+                let octants = (least..offset).fold(0, |all, index| all | octants_of(self.octants, index).unwrap_or(0));
+                if octants != said {
+                    return Err((HEADER_WORDS + entry as usize, Reason::References));
+                }
+                said = word >> 24;
             }
             least = offset;
         }
-        Ok(())
+        // The last word has no cell.
+        if said == 0 { Ok(()) } else { Err((HEADER_WORDS, Reason::References)) }
     }
 
     /// The parts of `words` by their header, if the lengths agree.

@@ -12,6 +12,11 @@ pub enum Form {
     Bitmask,
 }
 
+impl Form {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Full, Self::Octants, Self::Bitmask];
+}
+
 /// How a [`Grid`](super::Grid) is built: a preset, or one with knobs changed.
 ///
 /// ```

@@ -4,7 +4,11 @@
 //! crossings come in their order if each is later than the last by more than a margin. Where one is not, the cursor
 //! begins anew and decides everything.
 
-use super::{Grid, cells::OFFSET, met::Met};
+use super::{
+    Grid,
+    cells::{Cells, OFFSET},
+    met::Met,
+};
 use crate::{
     accel::{Accelerator, leaf::References, visit_by},
     geometry::{Aabb, Axis, AxisView, Lattice, PreparedRay, beyond},
@@ -128,13 +132,81 @@ impl Crossings<'_> {
     }
 }
 
-enum Crossed { Clear, Close, End }
+enum Crossed {
+    Clear,
+    Close,
+    End,
+}
 
-impl<'a> Grid<'a> {
-    /// See [`Accelerator::visit`].
+/// A table of cells, as a sweep asks it.
+trait Table {
+    /// What it says of a cell in which there is something; nothing of others.
+    fn look(&self, cell: u32) -> Option<u32>;
+
+    /// The octants in which there may be something.
+    fn octants(said: u32) -> u32;
+
+    /// The first reference and the one behind the last.
+    fn references(&self, cell: u32, said: u32) -> (u32, u32);
+}
+
+/// A word per cell: an offset and octants.
+struct Words<'a>(&'a [u32]);
+
+impl Table for Words<'_> {
     #[inline(always)]
-    pub(super) fn sweep(&self, ray: &PreparedRay, mut t_max: f32, mut visit: impl FnMut(Met<'a>) -> Option<f32>) {
-        let Course { axes: [x, y, z], relative, absolute } = &self.course;
+    fn look(&self, cell: u32) -> Option<u32> {
+        self.0.get(cell as usize).copied().filter(|&word| word > OFFSET)
+    }
+
+    #[inline(always)]
+    fn octants(said: u32) -> u32 {
+        said >> 24
+    }
+
+    #[inline(always)]
+    fn references(&self, cell: u32, said: u32) -> (u32, u32) {
+        let next = self.0.get(cell.wrapping_add(1) as usize).copied().unwrap_or(0);
+        (said & OFFSET, next & OFFSET)
+    }
+}
+
+impl Table for Cells<'_> {
+    #[inline(always)]
+    fn look(&self, cell: u32) -> Option<u32> {
+        self.rank(cell)
+    }
+
+    #[inline(always)]
+    fn octants(_said: u32) -> u32 {
+        0xff
+    }
+
+    #[inline(always)]
+    fn references(&self, _cell: u32, said: u32) -> (u32, u32) {
+        self.offsets.pair(said).unwrap_or((0, 0))
+    }
+}
+
+/// Where a sweep is.
+struct Sweep<'c> {
+    x: Crossings<'c>,
+    y: Crossings<'c>,
+    z: Crossings<'c>,
+    /// The number of the cell at hand.
+    at: u32,
+    /// Crossings before this are close to the last one.
+    clear: f32,
+    margin: f32,
+    /// Where the ray is about to leave the last cell.
+    behind: f32,
+}
+
+impl<'c> Sweep<'c> {
+    /// At the beginning of a ray; none if it misses the bounds.
+    #[inline(always)]
+    fn of(course: &'c Course, ray: &PreparedRay) -> Option<Self> {
+        let Course { axes: [x, y, z], relative, absolute } = course;
         let [vx, vy, vz, _] = &ray.views;
         let ((mut x, x_exit), (mut y, y_exit), (mut z, z_exit)) = (x.crossings(vx), y.crossings(vy), z.crossings(vz));
         let t_min = ray.ray().t_min;
@@ -144,43 +216,39 @@ impl<'a> Grid<'a> {
             + ((vx.exit.abs() + vy.exit.abs()) + vz.exit.abs()) * absolute
             + ((t_min.abs() - t_min) * (1.0 / 4096.0) + 4.0 * f32::MIN_POSITIVE);
         if enter > exit + margin {
-            return;
+            return None;
         }
-        let enter = enter - margin;
         let mut at = 0_u32;
         for (line, axis) in [&mut x, &mut y, &mut z].into_iter().zip(Axis::ALL) {
-            let per_cell = self.course.axes[axis as usize].inverse * axis.of(ray.ray().direction).abs();
-            let before = ((enter - line.next) * per_cell) as u32;
+            let per_cell = course.axes[axis as usize].inverse * axis.of(ray.ray().direction).abs();
+            let before = (((enter - margin) - line.next) * per_cell) as u32;
             at = at.wrapping_add(line.side.number).wrapping_add(before.wrapping_mul(line.stride));
             line.next = (line.next + line.step) + before as i32 as f32 * line.step;
         }
-        let behind = exit - 0.5 * margin;
-        let cells = match self.cells.offsets {
-            References::Wide(cells) if self.cells.mask == OFFSET => cells,
-            _ => return self.walk(ray, t_max, &mut visit),
-        };
+        Some(Self { x, y, z, at, clear: enter, margin, behind: exit - 0.5 * margin })
+    }
+
+    /// To the end of the ray; false if that is not reached, because two crossings are close.
+    #[inline(always)]
+    fn run<T: Table>(self, table: T, t_max: f32, mut visit: impl FnMut((u32, u32), u32) -> Option<f32>) -> bool {
+        let Self { mut x, mut y, mut z, mut at, mut clear, margin, behind } = self;
         let mut end = least(beyond(t_max) + margin, behind);
-        // Crossings before this are close to the last one.
-        let mut clear = enter + margin;
         loop {
-            if let Some(&cell) = cells.get(at as usize)
-                && cell > OFFSET
-            {
+            if let Some(said) = table.look(at) {
                 let exit = least(least(x.next, y.next), z.next);
                 let (from, to) = (clear - 2.0 * margin, exit + margin);
                 let octants = x.halves(from, to) & y.halves(from, to) & z.halves(from, to);
-                if octants & cell >> 24 != 0 {
-                    let end_of = cells.get(at.wrapping_add(1) as usize).map_or(0, |&cell| cell & OFFSET);
-                    let met = Met::new(self.references, self.octants, cell & OFFSET, end_of, octants);
-                    match visit(met) {
-                        Some(t) => t_max = t,
-                        None => return,
-                    }
+                if octants & T::octants(said) != 0 {
+                    let Some(t_max) = visit(table.references(at, said), octants) else { return true };
                     end = least(beyond(t_max) + margin, behind);
                 }
             }
             let crossed = if y.next < x.next {
-                if z.next < y.next { z.cross(&mut clear, end, margin, &mut at) } else { y.cross(&mut clear, end, margin, &mut at) }
+                if z.next < y.next {
+                    z.cross(&mut clear, end, margin, &mut at)
+                } else {
+                    y.cross(&mut clear, end, margin, &mut at)
+                }
             } else if z.next < x.next {
                 z.cross(&mut clear, end, margin, &mut at)
             } else {
@@ -188,19 +256,48 @@ impl<'a> Grid<'a> {
             };
             match crossed {
                 Crossed::Clear => {}
-                Crossed::Close => break,
+                Crossed::Close => return false,
+                // Behind what is wanted.
+                Crossed::End if end < behind => return true,
+                // Out of the last cell, if no other crossing is near.
                 Crossed::End => {
-                    // Behind what is wanted, or out of the last cell with no other crossing near.
                     let is_near = |t: f32| u32::from(!(t > clear));
-                    let near = [&x, &y, &z].map(|line| is_near(line.next) + is_near(line.next + line.step));
-                    if end < behind || near[0] + near[1] + near[2] == 1 {
-                        return;
-                    }
-                    break;
+                    let [x, y, z] = [x, y, z].map(|line| is_near(line.next) + is_near(line.next + line.step));
+                    return x + y + z == 1;
                 }
             }
         }
-        self.walk(ray, t_max, &mut visit);
+    }
+}
+
+impl<'a> Grid<'a> {
+    /// See [`Accelerator::visit`].
+    #[inline(always)]
+    pub(super) fn sweep(&self, ray: &PreparedRay, t_max: f32, mut visit: impl FnMut(Met<'a>) -> Option<f32>) {
+        match self.cells.offsets {
+            References::Wide(words) if self.cells.mask == OFFSET => {
+                self.sweep_over(Words(words), ray, t_max, &mut visit)
+            }
+            _ if !self.cells.blocks.is_empty() => self.sweep_over(self.cells, ray, t_max, &mut visit),
+            _ => self.walk(ray, t_max, &mut visit),
+        }
+    }
+
+    #[inline(always)]
+    fn sweep_over(
+        &self,
+        table: impl Table,
+        ray: &PreparedRay,
+        t_max: f32,
+        visit: &mut impl FnMut(Met<'a>) -> Option<f32>,
+    ) {
+        let Some(sweep) = Sweep::of(&self.course, ray) else { return };
+        let is_done = sweep.run(table, t_max, |(first, end), octants| {
+            visit(Met::new(self.references, self.octants, first, end, octants))
+        });
+        if !is_done {
+            self.walk(ray, t_max, visit);
+        }
     }
 
     /// The same by the cursor, which decides what is close.
