@@ -46,9 +46,8 @@ struct Side {
     /// What the number of the cell behind it has from this axis, and what is added for the next cell.
     number: u32,
     stride: u32,
-    /// The octants in the first half of a cell, and in the second.
+    /// The octants in the first half of a cell.
     near: u32,
-    far: u32,
 }
 
 /// A grid's planes as sweeps want them.
@@ -67,13 +66,12 @@ impl Course {
         let [nx, ny, nz] = Axis::ALL.map(|axis| lattice.last(axis) / 2);
         let spacing = |axis: Axis, count: u32, stride: u32, lower: u32| {
             let (plane, step) = lattice.along(axis as u32);
-            let ascending = Side { plane, number: 0, stride, near: lower, far: 0xff ^ lower };
+            let ascending = Side { plane, number: 0, stride, near: lower };
             let descending = Side {
                 plane: lattice.position(axis, lattice.last(axis)),
                 number: count.wrapping_sub(1).wrapping_mul(stride),
                 stride: stride.wrapping_neg(),
                 near: 0xff ^ lower,
-                far: lower,
             };
             let (width, inverse) = (2.0 * step, 0.5 / step);
             Spacing { sides: [ascending, descending], width, inverse, extent: lattice.extent(axis) }
@@ -107,7 +105,7 @@ impl Crossings<'_> {
     fn halves(&self, enter: f32, exit: f32) -> u32 {
         let middle = self.next - 0.5 * self.step;
         if middle < enter {
-            self.side.far
+            0xff ^ self.side.near
         } else if middle > exit {
             self.side.near
         } else {
