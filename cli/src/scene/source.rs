@@ -1,20 +1,19 @@
 use std::{fs::File, io::Read, path::Path};
 
 use hitscan::{
-    Error, LatticeMesh, Mesh,
+    Error, Mesh,
     accel::Structure,
     asset::{Asset, AssetError, Kind},
     bake::Baker,
-    glam::Vec3,
-    primitives::{Indices, Normals, Primitives, Renumbering, Reordered, TexCoords},
+    primitives::{Normals, Primitives, Renumbering, Reordered, Soup, TexCoords},
     render::{Materials, Textures},
 };
 
-use super::{Built, Choice, Palette, Preset, Skin, StructureArgs, broken};
+use super::{Built, Choice, Geometry, Preset, StructureArgs, broken};
 use crate::{
-    failure::{Failure, warn},
+    failure::Failure,
     input,
-    model::{Fault, LoadError, Model, Placement},
+    model::{Fault, LoadError},
     progress::Progress,
     version::hex,
     world,
@@ -32,80 +31,9 @@ pub enum Source {
     Asset {
         /// Its words.
         words: Vec<u32>,
-        /// Where its vertices are, if they stand on a lattice.
-        positions: Vec<Vec3>,
+        /// Its triangles, if they are stored otherwise than as a mesh.
+        unpacked: Option<Box<Geometry>>,
     },
-}
-
-/// Triangles and their materials.
-#[derive(Debug, Default)]
-pub struct Geometry {
-    /// Positions.
-    pub vertices: Vec<Vec3>,
-    /// Corners, if the numbers of some need 32 bits.
-    pub wide: Vec<[u32; 3]>,
-    /// Corners, if 16 bits are enough.
-    pub narrow: Vec<[u16; 3]>,
-    /// Materials.
-    pub palette: Palette,
-    /// Pictures on them, if they are wanted and there are any.
-    pub skin: Option<Box<Skin>>,
-    /// Which part of the file each run of triangles is; none if the format places nothing.
-    pub placements: Vec<Placement>,
-    /// Whether y is up by the definition of the file's format.
-    pub y_up: bool,
-}
-
-impl Geometry {
-    /// These triangles, their corners in 16 bits if they fit.
-    pub fn new(vertices: Vec<Vec3>, triangles: Vec<[u32; 3]>, palette: Palette) -> Self {
-        let (mut wide, mut narrow) = (triangles, Vec::new());
-        if vertices.len() <= 1 << 16 {
-            narrow = wide.iter().map(|corners| corners.map(|vertex| vertex as u16)).collect();
-            wide = Vec::new();
-        }
-        Self { vertices, wide, narrow, palette, skin: None, placements: Vec::new(), y_up: false }
-    }
-
-    /// The model of a file, with pictures of at most so many pixels along a side if they are wanted; what is odd about it
-    /// is said on standard error.
-    pub fn load(path: &Path, textures: Option<u16>) -> Result<Self, Failure> {
-        let mut model = Model::load(path)?;
-        let say = |warning: &str| warn(&format!("{}: {warning}", path.display()));
-        model.warnings.iter().for_each(|warning| say(warning));
-        let skin = textures.and_then(|most| Skin::of_model(&mut model, most, |warning| say(&warning)));
-        let vertices = model.vertices.into_iter().map(Vec3::from_array).collect();
-        let palette = Palette::of_model(&model.materials, model.material_ids);
-        let name = path.to_string_lossy().to_ascii_lowercase();
-        let y_up = [".gltf", ".glb", ".gltf.gz", ".glb.gz"].iter().any(|ending| name.ends_with(ending));
-        Ok(Self {
-            y_up,
-            skin: skin.map(Box::new),
-            placements: model.placements,
-            ..Self::new(vertices, model.triangles, palette)
-        })
-    }
-
-    /// How many triangles there are.
-    pub fn len(&self) -> usize {
-        self.wide.len() + self.narrow.len()
-    }
-
-    /// The bytes of vertices and corners.
-    pub fn bytes(&self) -> usize {
-        size_of_val(&*self.vertices) + size_of_val(&*self.wide) + size_of_val(&*self.narrow)
-    }
-
-    /// The corners of the triangles.
-    pub fn indices(&self) -> Indices<'_> {
-        if self.wide.is_empty() { Indices::Narrow(&self.narrow) } else { Indices::Wide(&self.wide) }
-    }
-
-    /// The triangles, checked.
-    pub fn mesh(&self) -> Result<Mesh<'_>, Failure> {
-        let mend = "scale the mesh or move it nearer to the origin";
-        Mesh::new(&self.vertices, self.indices()).map_err(|error| Failure::new(error, mend))
-    }
 }
 
 /// What there is to see of a source.
@@ -113,9 +41,11 @@ impl Geometry {
 pub struct View<'a> {
     /// The triangles.
     pub mesh: Mesh<'a>,
+    /// The same as an asset has them, if that is in the order of its leaves: its structure is over these.
+    pub soup: Option<Soup<'a>>,
     /// Their materials, if it names any.
     pub materials: Option<Materials<'a>>,
-    /// The pictures on them, and where in these the vertices lie, if there are any.
+    /// The pictures on those of an asset, and where in these the vertices lie, if there are any.
     pub textures: Option<(Textures<'a>, TexCoords<'a>)>,
     /// The normals of an asset's vertices, if it has any.
     pub normals: Option<Normals<'a>>,
@@ -152,7 +82,7 @@ impl Source {
         let source = if marked || path.extension().is_some_and(|extension| extension == "hits") {
             Self::load_asset(path)?
         } else if path.extension().is_some_and(|extension| extension == "toml") {
-            Self::Asset { words: world::load(path, &StructureArgs::default())?, positions: Vec::new() }
+            Self::Asset { words: world::load(path, &StructureArgs::default(), textures)?, unpacked: None }
         } else {
             Self::Model(Geometry::load(path, textures).map_err(|failure| mention_assets(failure, path))?)
         };
@@ -170,8 +100,8 @@ impl Source {
         }
         // Whatever else the asset is for, its header, table and checksum must be right.
         let asset = Asset::from_words(&words).map_err(|error| damaged(path, error))?;
-        let positions = asset.read().map_or(Vec::new(), |mesh: LatticeMesh<'_>| mesh.positions().collect());
-        Ok(Self::Asset { words, positions })
+        let unpacked = Geometry::unpacked(&asset).map_err(|error| damaged(path, error))?;
+        Ok(Self::Asset { words, unpacked: unpacked.map(Box::new) })
     }
 
     /// The asset, if it is one of scenes that are placed.
@@ -213,27 +143,24 @@ impl Source {
                 let palette = &geometry.palette;
                 let materials = (!palette.materials.is_empty()).then(|| palette.as_materials());
                 let mesh = geometry.mesh().map_err(name)?;
-                let skin = geometry.skin.as_ref().map(|skin| Asset::from_words(skin.as_words())).transpose();
-                let textures = skin.map_err(|error| broken(hitscan::Error::from(error)))?;
-                let textures = textures.map(|skin| pictures(&skin)).transpose().map_err(broken)?.flatten();
                 let (y_up, seconds) = (geometry.y_up, 0.0);
-                Ok(View { mesh, materials, textures, normals: None, structure: None, renumbering: None, y_up, seconds })
+                let (soup, textures, normals, structure, renumbering) = (None, None, None, None, None);
+                Ok(View { mesh, soup, materials, textures, normals, structure, renumbering, y_up, seconds })
             }
             Self::Asset { .. } if self.world().is_some() => {
                 let what = format!("{}: is a world of placed scenes", path.display());
                 Err(Failure::new(what, "name one of the meshes that are placed"))
             }
-            Self::Asset { words, positions } => {
+            Self::Asset { words, unpacked } => {
                 let progress = Progress::spinner("checking the asset …");
                 let damaged = |error| damaged(path, error);
                 let asset = Asset::from_words(words).map_err(|error| damaged(error.into()))?;
                 let has = |kind| asset.sections().any(|section| section.kind == kind);
-                let mesh = if has(Kind::LatticeVertices) {
-                    let on_lattice: LatticeMesh<'_> = asset.read().map_err(damaged)?;
-                    Mesh::new(positions, on_lattice.indices()).map_err(|error| damaged(error.into()))?
-                } else {
-                    asset.read().map_err(damaged)?
+                let mesh = match unpacked {
+                    Some(geometry) => geometry.mesh()?,
+                    None => asset.read().map_err(damaged)?,
                 };
+                let soup = has(Kind::Soup).then(|| asset.read().map_err(damaged)).transpose()?;
                 let materials = has(Kind::Materials).then(|| asset.read().map_err(damaged)).transpose()?;
                 let textures = pictures(&asset).map_err(damaged)?;
                 let normals = has(Kind::Normals).then(|| asset.read().map_err(damaged)).transpose()?;
@@ -245,14 +172,14 @@ impl Source {
                 };
                 let renumbering = has(Kind::Numbers).then(|| asset.read().map_err(damaged)).transpose()?;
                 let (y_up, seconds) = (false, progress.finish());
-                Ok(View { mesh, materials, textures, normals, structure, renumbering, y_up, seconds })
+                Ok(View { mesh, soup, materials, textures, normals, structure, renumbering, y_up, seconds })
             }
         }
     }
 }
 
 /// The pictures of an asset and where its vertices lie in them, if it has both.
-fn pictures<'a>(asset: &Asset<'a>) -> Result<Option<(Textures<'a>, TexCoords<'a>)>, Error> {
+pub(super) fn pictures<'a>(asset: &Asset<'a>) -> Result<Option<(Textures<'a>, TexCoords<'a>)>, Error> {
     let has = |kind| asset.sections().any(|section| section.kind == kind);
     if has(Kind::Textures) && has(Kind::TexCoords) { Ok(Some((asset.read()?, asset.read()?))) } else { Ok(None) }
 }
