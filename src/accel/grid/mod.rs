@@ -6,6 +6,7 @@
 
 mod build;
 mod cells;
+mod course;
 mod cover;
 mod line;
 mod met;
@@ -20,7 +21,7 @@ pub use met::Met;
 pub use options::{Form, Options};
 pub use traverse::GridTraversal;
 
-use self::{cells::Cells, sweep::Course};
+use self::{cells::Cells, course::Course};
 use super::{Accelerator, Cell, Hierarchy, Inside, Leaf, leaf::References};
 use crate::{
     arena::Arena,

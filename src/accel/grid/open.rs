@@ -5,10 +5,10 @@ use glam::Vec3;
 use super::{
     Grid, HEADER_WORDS, MAX_COUNT, MAX_RESOLUTION,
     cells::{Cells, OFFSET, block_words, narrow_offsets, narrow_references, number_words, reference_words},
+    course::Course,
     cover::Frame,
     met::octants_of,
     options::Form,
-    sweep::Course,
 };
 use crate::{
     accel::{Malformed, Reason, leaf::References},

@@ -7,99 +7,34 @@
 use super::{
     Grid,
     cells::{Cells, OFFSET},
+    course::{Course, Side, Spacing},
     met::Met,
 };
 use crate::{
     accel::{Accelerator, leaf::References, visit_by},
-    geometry::{Aabb, Axis, AxisView, Lattice, PreparedRay, beyond},
+    geometry::{Axis, AxisView, PreparedRay, beyond},
     math::{greatest, least},
 };
-
-/// Planes of an axis, equally far apart up to roundings.
-#[derive(Clone, Copy, Debug)]
-struct Spacing {
-    /// As rays see them that ascend, and that descend.
-    sides: [Side; 2],
-    /// The distance from one to the next, and one over that.
-    width: f32,
-    inverse: f32,
-    /// The distance from the first to the last.
-    extent: f32,
-}
-
-impl Spacing {
-    /// Where a ray crosses the first plane, and where the last.
-    #[inline(always)]
-    fn crossings(&self, view: &AxisView) -> (Crossings<'_>, f32) {
-        let side = &self.sides[(view.entry.to_bits() >> 31) as usize];
-        let inverse = view.entry.abs();
-        let next = (side.plane - view.origin) * view.entry;
-        (Crossings { next, step: self.width * inverse, stride: side.stride, side }, next + self.extent * inverse)
-    }
-}
-
-/// What rays meet first along an axis.
-#[derive(Clone, Copy, Debug)]
-struct Side {
-    /// The first plane.
-    plane: f32,
-    /// What the number of the cell behind it has from this axis, and what is added for the next cell.
-    number: u32,
-    stride: u32,
-    /// The octants in the first half of a cell.
-    near: u32,
-}
-
-/// A grid's planes as sweeps want them.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Course {
-    axes: [Spacing; 3],
-    /// The error of a parameter relative to itself, of as many sums as there are cells along an axis, beside twice the
-    /// widening of exits.
-    relative: f32,
-    /// The error of a plane's place.
-    absolute: f32,
-}
-
-impl Course {
-    pub(super) fn new(lattice: &Lattice, bounds: &Aabb) -> Self {
-        let [nx, ny, nz] = Axis::ALL.map(|axis| lattice.last(axis) / 2);
-        let spacing = |axis: Axis, count: u32, stride: u32, lower: u32| {
-            let (plane, step) = lattice.along(axis as u32);
-            let ascending = Side { plane, number: 0, stride, near: lower };
-            let descending = Side {
-                plane: lattice.position(axis, lattice.last(axis)),
-                number: count.wrapping_sub(1).wrapping_mul(stride),
-                stride: stride.wrapping_neg(),
-                near: 0xff ^ lower,
-            };
-            let (width, inverse) = (2.0 * step, 0.5 / step);
-            Spacing { sides: [ascending, descending], width, inverse, extent: lattice.extent(axis) }
-        };
-        let axes = [
-            spacing(Axis::X, nx, ny.wrapping_mul(nz), 0x0f),
-            spacing(Axis::Y, ny, nz, 0x33),
-            spacing(Axis::Z, nz, 1, 0x55),
-        ];
-        let steps = nx.max(ny).max(nz) as f32;
-        let farthest = greatest(bounds.min.abs().max_element(), bounds.max.abs().max_element());
-        Self {
-            axes,
-            relative: 1.0 / 32_768.0 + steps * (1.0 / 4_194_304.0),
-            absolute: farthest * (1.0 / 262_144.0) + f32::MIN_POSITIVE,
-        }
-    }
-}
 
 /// Where a ray crosses the planes of an axis.
 struct Crossings<'c> {
     next: f32,
     step: f32,
+    /// What is added to the number of the cell.
     stride: u32,
     side: &'c Side,
 }
 
-impl Crossings<'_> {
+impl<'c> Crossings<'c> {
+    /// Where a ray crosses the first plane, and where the last.
+    #[inline(always)]
+    fn of(spacing: &'c Spacing, view: &AxisView) -> (Self, f32) {
+        let side = &spacing.sides[(view.entry.to_bits() >> 31) as usize];
+        let inverse = view.entry.abs();
+        let next = (side.plane - view.origin) * view.entry;
+        (Self { next, step: spacing.width * inverse, stride: side.stride, side }, next + spacing.extent * inverse)
+    }
+
     /// The octants of a cell in the halves along this axis that the ray may meet between these parameters.
     #[inline(always)]
     fn halves(&self, enter: f32, exit: f32) -> u32 {
@@ -130,9 +65,13 @@ impl Crossings<'_> {
     }
 }
 
+/// What came of crossing a plane.
 enum Crossed {
+    /// The next cell.
     Clear,
+    /// Nothing: it is close to the crossing before.
     Close,
+    /// Nothing: it is behind the end.
     End,
 }
 
@@ -206,7 +145,8 @@ impl<'c> Sweep<'c> {
     fn of(course: &'c Course, ray: &PreparedRay) -> Option<Self> {
         let Course { axes: [x, y, z], relative, absolute } = course;
         let [vx, vy, vz, _] = &ray.views;
-        let ((mut x, x_exit), (mut y, y_exit), (mut z, z_exit)) = (x.crossings(vx), y.crossings(vy), z.crossings(vz));
+        let ((mut x, x_exit), (mut y, y_exit), (mut z, z_exit)) =
+            (Crossings::of(x, vx), Crossings::of(y, vy), Crossings::of(z, vz));
         let t_min = ray.ray().t_min;
         let enter = greatest(greatest(greatest(x.next, t_min), y.next), z.next);
         let exit = least(least(x_exit, y_exit), z_exit);
