@@ -59,6 +59,9 @@ const ERROR: f32 = 1.0 / 262_144.0;
 /// Beyond this, products of three lengths may leave the range of `f32`.
 const LARGE: f32 = 1.0e24;
 
+/// Products of two lengths below this may be small beside what they lose by underflow.
+const TINY: f32 = 1.0e-30;
+
 /// What the division by a step, which may itself be less, may lose.
 const SMALL: f32 = 16.0 * f32::MIN_POSITIVE;
 
@@ -127,7 +130,7 @@ impl Pencil {
         let edges = length(ab) + length(ca);
         let area = (length(a) + edges) * edges;
         let error = area * (self.size * ERROR) + SMALL;
-        if !(area < LARGE && self.size < LARGE) {
+        if !(area > TINY && area < LARGE && self.size < LARGE) {
             return self.all();
         }
         let normals = [b.cross(bc), c.cross(ca), a.cross(ab)];
@@ -239,6 +242,32 @@ mod tests {
             }
         }
         assert!(hits > 50_000 && candidates < hits + hits / 20, "{hits} {candidates}");
+    }
+
+    /// Products of such lengths are rounded to whole denormal numbers.
+    #[test]
+    fn candidates_are_the_hits_where_products_underflow() {
+        let screen = Screen { forward: Vec3::Z, up: Vec3::Y * 1.0e15, right: Vec3::NEG_X * 1.0e15, half: [4.0; 2] };
+        let pencil = Pencil::new(Vec3::ZERO, screen, [0, 0], [8, 8]).unwrap();
+        let mut state = 1_u32;
+        let mut random = |steps: u32| {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            ((state >> 8) % steps) as f32 - 0.5 * (steps - 1) as f32
+        };
+        let mut hits = 0;
+        for _ in 0..100_000 {
+            let mut corner = || Vec3::new(random(16), random(16), random(16)) * 2.0e-23;
+            let triangle = Triangle::new(corner(), corner(), corner());
+            let rays = pencil.candidates(&triangle);
+            for (column, row) in (0..8).flat_map(|row| (0..8).map(move |column| (column, row))) {
+                let ray = pencil.ray(column, row).prepare().unwrap();
+                if triangle.intersect(&ray, 0.0, f32::MAX).is_some() {
+                    hits += 1;
+                    assert_ne!(rays >> (row * Pencil::SIDE + column) & 1, 0, "{triangle:?} {column} {row}");
+                }
+            }
+        }
+        assert!(hits > 10_000, "{hits}");
     }
 
     #[test]
