@@ -101,7 +101,8 @@ struct Growth<'g, P: ?Sized, B> {
 }
 
 impl<P: Primitives + Sync + ?Sized, B: Send> Growth<'_, P, B> {
-    /// The hierarchy over `items`, of as many references at most as there are places; if nodes were put elsewhere, not in the order of a walk.
+    /// The hierarchy over `items`, of as many references at most as there are places; if nodes were put elsewhere, not in the
+    /// order of a walk.
     fn grow(&self, mut items: Vec<Item>) -> ControlFlow<B, Binary> {
         let &Self { primitives, options, monitor } = self;
         let count = primitives.len() as usize;

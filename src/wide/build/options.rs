@@ -40,7 +40,7 @@ impl Options {
         }
     }
 
-    /// A good deal of both: half as fast to build, and up to a quarter less work for rays where primitives differ in size.
+    /// A good deal of both: a fifth slower to build, and up to a quarter less work for rays where primitives differ in size.
     #[must_use]
     pub const fn balanced() -> Self {
         Self { step_cost: 0.3, bins: 32, reinsertions: 4, reinserted: 0.05, ..Self::fast() }
