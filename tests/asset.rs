@@ -4,7 +4,10 @@
 
 mod common;
 
-use common::{Random, adversarial_mesh, adversarial_ray, plans, point};
+use common::{
+    Random, adversarial_mesh, adversarial_ray, plans, point,
+    seal::{checksum, sealed},
+};
 use hitscan::{
     Error, Instance, Instances, KdTree, List, Mesh, Ray, Scene,
     accel::{Plan, Reason, Structure},
@@ -18,17 +21,6 @@ use hitscan::{
     query::Progress,
     render::{Material, Materials, Numbers},
 };
-
-/// FNV-1a by words with a rotation, as the format defines it.
-fn checksum(words: &[u32]) -> u32 {
-    let summed = words.iter().enumerate().filter(|(index, _)| *index != 4);
-    summed.fold(0x811c_9dc5, |sum: u32, (_, word)| (sum ^ word).wrapping_mul(0x0100_0193).rotate_left(13))
-}
-
-fn sealed(mut words: Vec<u32>) -> Vec<u32> {
-    words[4] = checksum(&words);
-    words
-}
 
 fn soup(seed: u64, most: usize) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     adversarial_mesh(&mut Random::new(seed), 2, most)
