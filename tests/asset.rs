@@ -17,7 +17,7 @@ use hitscan::{
     geometry::{Sphere, Transform},
     glam::{Mat3, Vec3},
     kdtree::Options,
-    primitives::{Reordered, Smooth, Spheres},
+    primitives::{Normals, Reordered, Smooth, Spheres},
     query::Progress,
     render::{Material, Materials, Numbers},
 };
@@ -104,6 +104,9 @@ fn normals_are_baked_and_shade() {
         blended += u32::from(packed.shading_normal != packed.geometric_normal);
     }
     assert!(blended > 500, "{blended}");
+    let stored: Normals = asset.read().unwrap();
+    assert!(stored.len() == 169 && !stored.is_empty());
+    assert!(Asset::from_words(&Baker::new().normals(&[]).finish()).unwrap().read::<Normals>().unwrap().is_empty());
     assert!(Asset::from_words(&flat).unwrap().read::<Smooth>().is_err());
 
     // Counts that are not those of the words.
