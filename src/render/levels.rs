@@ -21,6 +21,18 @@ impl Levels {
     /// 256 levels.
     pub const BITS_8: Self = Self(BITS_8);
 
+    /// The linear light of a level, 0 to 1; none of one that is not there.
+    ///
+    /// ```
+    /// use hitscan::{glam::Vec3, render::{Color, Levels}};
+    /// assert_eq!(Levels::BITS_8.light(255), 1.0);
+    /// assert_eq!(<[u8; 3]>::from_linear(Vec3::splat(Levels::BITS_8.light(188))), [188; 3]);
+    /// ```
+    #[must_use]
+    pub fn light(self, level: u8) -> f32 {
+        self.0.get(usize::from(level)).map_or(0.0, |&light| f32::from(light)) * (1.0 / ONE as f32)
+    }
+
     /// The brightest level not above `light` and the next, each with its light; twice the same for the last.
     pub(super) fn around(self, light: i32) -> [(u8, i32); 2] {
         let above = self.0.partition_point(|&level| i32::from(level) <= light);
@@ -33,8 +45,8 @@ impl Levels {
 const BITS_1: &[u16] = &linear::<2>();
 const BITS_2: &[u16] = &linear::<4>();
 const BITS_4: &[u16] = &linear::<16>();
-pub(super) const BITS_5: &[u16] = &linear::<32>();
-pub(super) const BITS_6: &[u16] = &linear::<64>();
+const BITS_5: &[u16] = &linear::<32>();
+const BITS_6: &[u16] = &linear::<64>();
 const BITS_8: &[u16] = &linear::<256>();
 
 /// The linear light of `N` levels.

@@ -2,7 +2,7 @@ use core::fmt;
 
 use glam::{Vec2, Vec3};
 
-use super::levels::{BITS_5, BITS_6, ONE};
+use super::Levels;
 use crate::math;
 
 /// The colours of a picture, row by row from the upper left: sRGB in RGB565, red in the upper 5 bits.
@@ -57,9 +57,9 @@ impl Texels<'_> {
             }
         };
         let color = color.unwrap_or(0);
-        let level = |levels: &[u16], level: u16| levels.get(usize::from(level)).map_or(0.0, |&light| f32::from(light));
-        let light = Vec3::new(level(BITS_5, color >> 11), level(BITS_6, color >> 5 & 63), level(BITS_5, color & 31));
-        light * (1.0 / ONE as f32)
+        let light = |levels: Levels, level: u16| levels.light(level as u8);
+        let (red, green) = (light(Levels::BITS_5, color >> 11), light(Levels::BITS_6, color >> 5 & 63));
+        Vec3::new(red, green, light(Levels::BITS_5, color & 31))
     }
 }
 

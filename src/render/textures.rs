@@ -1,5 +1,7 @@
 #[cfg(feature = "alloc")]
 use alloc::{vec, vec::Vec};
+#[cfg(feature = "alloc")]
+use core::ops::Range;
 
 use super::{Filter, Texels, Texture, Wrap};
 use crate::{
@@ -55,17 +57,18 @@ impl<'a> Textures<'a> {
     pub(crate) fn packed(textures: &[Option<Texture<'_>>]) -> Vec<u32> {
         let mut words = vec![0; 1 + textures.len()];
         words[0] = textures.len() as u32;
-        let mut known: Vec<(Vec<u32>, u32)> = Vec::new();
+        // Where in the words those are that are not the same as one before.
+        let mut known: Vec<Range<usize>> = Vec::new();
         for (material, texture) in textures.iter().enumerate() {
             let Some(texture) = texture else { continue };
-            let texture = packed(texture);
-            let same = known.iter().find(|(other, _)| *other == texture).map(|(_, place)| *place);
-            words[1 + material] = same.unwrap_or_else(|| {
-                let place = words.len() as u32;
-                words.extend(&texture);
-                known.push((texture, place));
-                place
-            });
+            let place = words.len();
+            words.extend(packed(texture));
+            let same = known.iter().find(|other| words.get((*other).clone()) == words.get(place..)).cloned();
+            match &same {
+                Some(_) => words.truncate(place),
+                None => known.push(place..words.len()),
+            }
+            words[1 + material] = same.map_or(place, |other| other.start) as u32;
         }
         words
     }

@@ -20,7 +20,7 @@ use crate::{
 pub struct Remembering(Built);
 
 impl Remembering {
-    pub fn make(mesh: &Mesh<'_>, named: &'static Named, preset: Preset) -> Result<Box<dyn Made>, Failure> {
+    pub fn make<'m>(mesh: &Mesh<'m>, named: &'static Named, preset: Preset) -> Result<Box<dyn Made + 'm>, Failure> {
         Ok(Box::new(Self(Built::named(mesh, named, preset, None)?)))
     }
 }
@@ -42,12 +42,12 @@ pub struct Behind {
 }
 
 impl Behind {
-    pub fn make(
+    pub fn make<'m>(
         kind: Bounding,
-        mesh: &Mesh<'_>,
+        mesh: &Mesh<'m>,
         named: &'static Named,
         preset: Preset,
-    ) -> Result<Box<dyn Made>, Failure> {
+    ) -> Result<Box<dyn Made + 'm>, Failure> {
         // Vertices that no triangle uses would only make it larger.
         let corners = (0..mesh.indices().len() as u32).flat_map(|index| {
             let triangle = mesh.triangle(index);
@@ -80,7 +80,7 @@ pub struct Ordered {
 }
 
 impl Ordered {
-    pub fn make(mesh: &Mesh<'_>, named: &'static Named, preset: Preset) -> Result<Box<dyn Made>, Failure> {
+    pub fn make<'m>(mesh: &Mesh<'m>, named: &'static Named, preset: Preset) -> Result<Box<dyn Made + 'm>, Failure> {
         let (built, numbers) = Built::named(mesh, named, preset, None)?.ordered(mesh)?;
         let mut places = vec![0; numbers.len()];
         (0..).zip(&numbers).for_each(|(place, &number)| places[number as usize] = place);

@@ -75,7 +75,7 @@ impl Contest<'_> {
         let mut entrants = Vec::new();
         for (row, (made, build)) in rows.iter().zip(&made) {
             entrants.push(match made {
-                Ok(made) => Ok(self.enter(row, &**made, *build, mesh)?),
+                Ok(made) => Ok(self.enter(row, &**made, made.seconds().unwrap_or(*build), mesh)?),
                 Err(failure) => Err(failure.to_string()),
             });
             progress.advance(1);
@@ -121,12 +121,17 @@ impl Contest<'_> {
     fn enter<'m>(&self, row: &Row, made: &'m dyn Made, build: f64, mesh: Mesh<'m>) -> Result<Entrant<'m>, Failure> {
         let bounce = &self.rays.bounce;
         let work = |rays: &[Ray], stride| {
+            if !made.is_counted() {
+                return Ok(Work { nodes: f64::NAN, tests: f64::NAN });
+            }
             let counts = Counts::default();
             Ok::<_, Failure>(Work::of(&*made.scene(mesh, Some(&counts))?, &counts, rays.iter().step_by(stride)))
         };
         // A few rays tell how many more can be afforded.
         let first = work(bounce, bounce.len().div_ceil(FIRST_LOOK).max(1))?;
-        let stride = ((first.nodes + first.tests) * bounce.len() as f64 / STEPS).ceil().clamp(1.0, 1.0e9) as usize;
+        // NaN, of what is not counted, becomes 1.
+        let stride =
+            ((first.nodes + first.tests) * bounce.len() as f64 / STEPS).ceil().clamp(1.0, 1.0e9).max(1.0) as usize;
         let bytes = made.bytes() as f64;
         let outcome = Outcome {
             build,

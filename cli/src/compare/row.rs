@@ -3,7 +3,7 @@ use hitscan::{Mesh, geometry::Bounding, render::Caster};
 use super::around::{Behind, Ordered, Remembering};
 use crate::{
     failure::Failure,
-    scene::{Built, Named, Preset, unwrapped},
+    scene::{Built, Named, Preset, Wide, unwrapped},
     trial::{self, Counts},
 };
 
@@ -19,7 +19,7 @@ pub struct Row {
 }
 
 /// What builds a row.
-type Make = fn(&Mesh<'_>, &'static Named, Preset) -> Result<Box<dyn Made>, Failure>;
+type Make = for<'m> fn(&Mesh<'m>, &'static Named, Preset) -> Result<Box<dyn Made + 'm>, Failure>;
 
 /// What a row has built.
 pub trait Made {
@@ -29,6 +29,16 @@ pub trait Made {
     /// Its bytes once it is baked.
     fn baked_bytes(&self, _mesh: &Mesh<'_>) -> Result<usize, Failure> {
         Ok(self.bytes())
+    }
+
+    /// The seconds that building it took, if those of this thread do not tell.
+    fn seconds(&self) -> Option<f64> {
+        None
+    }
+
+    /// Whether what rays take can be counted.
+    fn is_counted(&self) -> bool {
+        true
     }
 
     /// The scene of the mesh that it was built over, ready for rays; what they take is added to `counts`, if there are any.
@@ -47,6 +57,25 @@ impl Made for Built {
 
     fn scene<'a>(&'a self, mesh: Mesh<'a>, counts: Option<&'a Counts>) -> Result<Box<dyn Caster + 'a>, Failure> {
         unwrapped!(self.structure(&mesh)?, structure => trial::scene(structure, mesh, counts))
+    }
+}
+
+/// The one for hosts.
+impl Made for Wide<'_> {
+    fn bytes(&self) -> usize {
+        self.bytes()
+    }
+
+    fn seconds(&self) -> Option<f64> {
+        Some(self.seconds)
+    }
+
+    fn is_counted(&self) -> bool {
+        false
+    }
+
+    fn scene<'a>(&'a self, mesh: Mesh<'a>, _counts: Option<&'a Counts>) -> Result<Box<dyn Caster + 'a>, Failure> {
+        Ok(Box::new(self.scene(mesh)?))
     }
 }
 
@@ -71,7 +100,10 @@ impl Row {
         let plain = |named: &'static Named| Self {
             name: named.name,
             named,
-            make: |mesh, named, preset| Ok(Box::new(Built::named(mesh, named, preset, None)?)),
+            make: |mesh, named, preset| match named.is_wide() {
+                true => Ok(Box::new(Wide::alone(*mesh, preset)?)),
+                false => Ok(Box::new(Built::named(mesh, named, preset, None)?)),
+            },
         };
         let around = |named: &'static Named| {
             let rows = Self::AROUND.iter().filter(move |(_, inner, _)| *inner == named.name);
@@ -91,7 +123,7 @@ impl Row {
     }
 
     /// Builds it over a mesh.
-    pub fn make(&self, mesh: &Mesh<'_>, preset: Preset) -> Result<Box<dyn Made>, Failure> {
+    pub fn make<'m>(&self, mesh: &Mesh<'m>, preset: Preset) -> Result<Box<dyn Made + 'm>, Failure> {
         (self.make)(mesh, self.named, preset)
     }
 }

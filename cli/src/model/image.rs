@@ -1,10 +1,12 @@
 //! [`Image`]: the picture that a material names, not yet read.
 
+use std::borrow::Cow;
+use std::fmt;
 use std::path::PathBuf;
-use std::{fmt, io};
 
 use super::error::excerpt;
-use super::read_file;
+use super::{Model, read_file};
+use crate::input::explain;
 
 /// A picture on a material.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -17,44 +19,35 @@ pub struct Image {
     pub clamp: bool,
 }
 
-/// Where a file's bytes are.
-#[derive(Clone, PartialEq, Eq)]
+/// Where a file's bytes are: what is equal is the same picture.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Contents {
     /// In a file of their own.
     File(PathBuf),
-    /// Within the model's files, or why they are not.
-    Here(Result<Vec<u8>, String>),
+    /// In the model's own files, under this number.
+    Here(usize),
 }
 
-impl Image {
-    /// The bytes of the picture's file.
-    ///
-    /// # Errors
-    ///
-    /// What the system says of the file, or what is wrong with the model's.
-    pub fn read(&self) -> io::Result<Vec<u8>> {
-        match &self.contents {
-            Contents::File(path) => read_file(path),
-            Contents::Here(bytes) => bytes.clone().map_err(io::Error::other),
+impl Model {
+    /// The bytes of a picture's file, or what is wrong with it and how to mend that.
+    pub fn read_picture(&self, contents: &Contents) -> Result<Cow<'_, [u8]>, String> {
+        match contents {
+            Contents::File(path) => read_file(path).map(Cow::Owned).map_err(|error| explain(&error)),
+            Contents::Here(number) => match self.pictures.get(number) {
+                Some(Ok(bytes)) => Ok(Cow::Borrowed(bytes)),
+                Some(Err(why)) => Err(why.clone()),
+                None => Err("not in the model: export it again".to_owned()),
+            },
         }
     }
 }
 
 /// What it is called, on one line.
-impl fmt::Display for Image {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match &self.contents {
-            Contents::File(path) => write!(f, "`{}`", excerpt(&path.display().to_string())),
-            Contents::Here(_) => f.write_str("in the model"),
-        }
-    }
-}
-
-impl fmt::Debug for Contents {
+impl fmt::Display for Contents {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::File(path) => path.fmt(f),
-            Self::Here(bytes) => write!(f, "{:?}", bytes.as_ref().map(Vec::len)),
+            Self::File(path) => write!(f, "`{}`", excerpt(&path.display().to_string())),
+            Self::Here(number) => write!(f, "{number} of the model"),
         }
     }
 }

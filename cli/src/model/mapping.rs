@@ -1,6 +1,9 @@
 //! [`Mapping`]: where in the pictures of materials triangles lie.
 
-use super::{Fault, Model, fan};
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
+
+use super::{Fault, Material, Model, fan};
 
 /// Texture coordinates of the corners of triangles.
 #[derive(Clone, Debug, Default)]
@@ -31,34 +34,41 @@ impl Mapping {
     }
 }
 
-/// Makes sure that all triangles whose materials have pictures have coordinates: the others get their material
-/// without it, and that is said. Without pictures nothing is kept.
-pub(super) fn settle(model: &mut Model) -> Result<(), Fault> {
-    if model.materials.iter().all(|material| material.image.is_none()) {
-        model.mapping = Mapping::default();
-        return Ok(());
-    }
-    model.material_ids.resize(model.triangles.len(), 0);
-    model.mapping.corners.resize(model.triangles.len(), [Mapping::NONE; 3]);
-    // The material without its picture, for each that needs one.
-    let mut plain = vec![None; model.materials.len()];
-    let mut bare = 0;
-    for triangle in 0..model.triangles.len() {
-        let id = usize::from(model.material_ids[triangle]);
-        let material = &model.materials[id];
-        if material.image.is_none() || model.mapping.of(triangle).is_some() {
-            continue;
+impl Model {
+    /// Gives the triangles that lack coordinates, of the materials of which `is_pictured` is true, their material without
+    /// its picture; how many there are is said in the warnings.
+    pub fn settle(&mut self, is_pictured: impl Fn(u16) -> bool) -> Result<(), Fault> {
+        // The material without its picture, for each that needs one.
+        let mut plain = HashMap::new();
+        let mut bare = 0;
+        for triangle in 0..self.triangles.len() {
+            let id = self.material(triangle);
+            if !is_pictured(id) || self.mapping.of(triangle).is_some() {
+                continue;
+            }
+            bare += 1;
+            let without = match plain.entry(id) {
+                Entry::Occupied(known) => *known.get(),
+                Entry::Vacant(new) => {
+                    let material = Material { image: None, ..self.materials[usize::from(id)].clone() };
+                    *new.insert(self.push_material(material)?)
+                }
+            };
+            self.material_ids.resize(self.triangles.len(), 0);
+            self.material_ids[triangle] = without;
         }
-        bare += 1;
-        let without = super::Material { image: None, ..material.clone() };
-        model.material_ids[triangle] = match plain[id] {
-            Some(known) => known,
-            None => *plain[id].insert(model.push_material(without)?),
-        };
+        if bare > 0 {
+            let of = self.triangles.len();
+            self.warnings.push(format!(
+                "{bare} of {of} triangles lack texture coordinates, and go without their textures: unwrap them where the \
+                 model was made"
+            ));
+        }
+        Ok(())
     }
-    if bare > 0 {
-        let of = model.triangles.len();
-        model.warnings.push(format!("{bare} of {of} triangles lack texture coordinates: drawn without their textures"));
+
+    /// The number of a triangle's material.
+    pub fn material(&self, triangle: usize) -> u16 {
+        self.material_ids.get(triangle).copied().unwrap_or(0)
     }
-    Ok(())
 }

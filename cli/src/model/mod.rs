@@ -14,6 +14,7 @@ mod obj;
 mod ply;
 mod stl;
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::io::{self, Read};
 use std::ops::Range;
@@ -39,8 +40,10 @@ pub struct Model {
     pub materials: Vec<Material>,
     /// An index into `materials` per triangle, or empty when there is one material.
     pub material_ids: Vec<u16>,
-    /// Where in the pictures of materials the triangles lie; empty if no material has one.
+    /// Where in the pictures of materials the triangles lie.
     pub mapping: Mapping,
+    /// The pictures that lie in the model's own files, by their numbers there, or what is wrong with them.
+    pub pictures: BTreeMap<usize, Result<Vec<u8>, String>>,
     /// Which part of the file each run of triangles is, and where; none if the format places nothing.
     pub placements: Vec<Placement>,
     /// What was wrong in the file without spoiling its geometry, one line each.
@@ -98,7 +101,6 @@ impl Model {
         if self.materials.is_empty() {
             self.materials.push(Material::neutral(""));
         }
-        mapping::settle(&mut self)?;
         if self.materials.len() == 1 {
             self.material_ids = Vec::new();
         }

@@ -51,25 +51,32 @@ fn insert(materials: &mut HashMap<String, Material>, done: Option<(Material, u32
 fn image(text: &str, folder: &Path) -> Option<Image> {
     let mut rest = text.trim();
     let mut clamp = false;
-    while let Some((option, after)) = rest.split_once(char::is_whitespace).filter(|(word, _)| word.starts_with('-')) {
-        rest = after.trim_start();
+    loop {
+        let (option, mut after) = first_word(rest);
         // The arguments that an option must have, and those that it may have, which are numbers.
         let (needed, most) = match option {
             "-o" | "-s" | "-t" => (1, 3),
             "-mm" => (2, 2),
-            _ => (1, 1),
+            "-blendu" | "-blendv" | "-bm" | "-boost" | "-cc" | "-clamp" | "-imfchan" | "-texres" | "-type" => (1, 1),
+            _ => break,
         };
         for place in 0..most {
-            let (word, after) = rest.split_once(char::is_whitespace).unwrap_or((rest, ""));
+            let (word, behind) = first_word(after);
             if place >= needed && number(word).is_none() {
                 break;
             }
             clamp |= option == "-clamp" && word == "on";
-            rest = after.trim_start();
+            after = behind;
         }
+        rest = after;
     }
     let contents = Contents::File(folder.join(rest.replace('\\', "/")));
     (!rest.is_empty()).then_some(Image { contents, nearest: false, clamp })
+}
+
+/// A line's first word, and what follows it.
+fn first_word(line: &str) -> (&str, &str) {
+    line.split_once(char::is_whitespace).map_or((line, ""), |(word, rest)| (word, rest.trim_start()))
 }
 
 /// `r g b`, or one number for a grey.
@@ -112,8 +119,11 @@ mod tests {
             assert_eq!(name(text).as_deref(), Some("here/a b.png"), "{text}");
         }
         assert_eq!(name("skins\\a.png").as_deref(), Some("here/skins/a.png"));
-        for none in ["", " ", "-s 1 1 1", "-clamp", "-clamp on"] {
-            assert_eq!(name(none).filter(|name| name != "here/-clamp"), None, "{none}");
+        for none in ["", " ", "-s 1 1 1", "-clamp", "-clamp on", "-mm", "-bm 1 -o"] {
+            assert_eq!(name(none), None, "{none}");
+        }
+        for file in ["-", "-a.png", "- a.png"] {
+            assert_eq!(name(file), Some(format!("here/{file}")));
         }
         assert!(image("-clamp on a.png", Path::new("")).unwrap().clamp);
         let materials = read("newmtl a\nKd 0 0 0\nmap_Kd a.png\nnewmtl b\nKd 0 0 0\nmap_Kd", Path::new(""));

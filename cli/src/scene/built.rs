@@ -66,8 +66,11 @@ impl Built {
         most: Option<usize>,
     ) -> Result<Self, Failure> {
         let name = named.title(preset);
+        let Some(plan) = named.plan(preset, most) else {
+            let what = format!("--structure {}: only renders, casts and compares meshes", named.name);
+            return Err(Failure::new(what, "choose another structure"));
+        };
         let progress = Progress::spinner(&format!("building the {name} …"));
-        let plan = named.plan(preset, most);
         let words = bake::build(primitives, &plan).map_err(refuse)?;
         let seconds = progress.finish();
         Ok(Self { kind: plan.kind(), words, name, why: None, seconds, opened: false })
@@ -91,6 +94,15 @@ impl Built {
             Some((words, order)) => (Self { words, ..self }, order),
             None => (self, (0..primitives.len()).collect()),
         })
+    }
+
+    /// The same over a [`Soup`](hitscan::primitives::Soup), and its triangles by place.
+    pub fn gathered<P: Primitives>(self, primitives: &P) -> Result<(Self, Vec<u32>), Failure> {
+        let Some((words, order)) = bake::gathered(&self.structure(primitives)?) else {
+            let what = format!("--soup: the leaves of this structure ({}) are no ranges", self.name);
+            return Err(Failure::new(what, "choose kdtree, grid, bvh or dual-split"));
+        };
+        Ok((Self { words, ..self }, order))
     }
 
     /// How long it took to get it.

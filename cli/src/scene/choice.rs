@@ -15,8 +15,8 @@ use super::Preset;
 pub struct Named {
     /// Its name on the command line.
     pub name: &'static str,
-    /// How it is built.
-    plan: fn(Preset) -> Plan,
+    /// How it is built in words; not at all if it is [`Wide`](super::Wide).
+    plan: Option<fn(Preset) -> Plan>,
     /// What visiting a node of it takes, in tests of a triangle: measured, rounded, the same on every machine, so that
     /// what is recommended does not depend on the weather.
     pub node_cost: f64,
@@ -58,18 +58,19 @@ impl Named {
         Self::new("bvh", 1.25, |preset| bvh(preset, Method::Sah)),
         Self { is_candidate: false, ..Self::new("bvh-ploc", 1.25, |preset| bvh(preset, Method::Ploc)) },
         Self::new("dual-split", 0.85, |preset| Plan::DualSplit(tuned!(preset, dualsplit::Options))),
+        Self::WIDE,
     ];
+
+    /// The one for hosts alone.
+    const WIDE: Self = Self { name: "wide", plan: None, node_cost: 0.0, is_candidate: false };
 
     /// One that `auto` may choose.
     const fn new(name: &'static str, node_cost: f64, plan: fn(Preset) -> Plan) -> Self {
-        Self { name, plan, node_cost, is_candidate: true }
+        Self { name, plan: Some(plan), node_cost, is_candidate: true }
     }
 
     /// What `auto` takes where trials would last too long.
     const ASSUMED: &str = "kdtree";
-
-    /// Names that belong to structures of other versions.
-    const RESERVED: [&str; 1] = ["wide"];
 
     /// The one of this name.
     pub fn find(name: &str) -> Option<&'static Self> {
@@ -86,21 +87,26 @@ impl Named {
         Self::find(Self::ASSUMED).unwrap_or(Self::list())
     }
 
+    /// Whether it is the one for hosts alone, which is not built by a plan.
+    pub fn is_wide(&self) -> bool {
+        self.plan.is_none()
+    }
+
     /// How it is built for a preset, within so many bytes if it can be made to fit.
-    pub fn plan(&self, preset: Preset, most: Option<usize>) -> Plan {
-        match ((self.plan)(preset), most) {
+    pub fn plan(&self, preset: Preset, most: Option<usize>) -> Option<Plan> {
+        Some(match (self.plan?(preset), most) {
             (Plan::Grid(options), Some(bytes)) => Plan::Grid(options.fit(bytes)),
             (Plan::Octree(options), Some(bytes)) => Plan::Octree(options.fit(bytes)),
             (Plan::KdTree(options), Some(bytes)) => Plan::KdTree(options.fit(bytes)),
             (Plan::CompactKdTree(options), Some(bytes)) => Plan::CompactKdTree(options.fit(bytes)),
             (Plan::Bvh(options), Some(bytes)) => Plan::Bvh(options.fit(bytes)),
             (plan, _) => plan,
-        }
+        })
     }
 
     /// Its name and, if that makes a difference, the preset's.
     pub fn title(&self, preset: Preset) -> String {
-        if (self.plan)(Preset::Small) == (self.plan)(Preset::Fast) {
+        if self.plan.is_some_and(|plan| plan(Preset::Small) == plan(Preset::Fast)) {
             return self.name.to_owned();
         }
         format!("{} {}", self.name, preset.name())
@@ -145,11 +151,7 @@ impl FromStr for Choice {
         match Named::find(text) {
             Some(named) => Ok(Self::Named(named)),
             None if text == "auto" => Ok(Self::Auto),
-            None => {
-                let known = Named::RESERVED.contains(&text);
-                let what = if known { "this version does not have it" } else { "unknown structure" };
-                Err(format!("{what}, choose one of {}", Self::names()))
-            }
+            None => Err(format!("unknown structure, choose one of {}", Self::names())),
         }
     }
 }
@@ -184,16 +186,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_are_known_reserved_or_refused() {
+    fn names_are_known_or_refused() {
         for named in Named::ALL {
             assert_eq!(named.name.parse(), Ok(Choice::Named(named)));
         }
         assert_eq!("auto".parse(), Ok(Choice::Auto));
-        for name in Named::RESERVED {
-            let error = name.parse::<Choice>().unwrap_err();
-            assert!(error.starts_with("this version does not have it, choose one of auto, list, "), "{error}");
-        }
-        assert!("tree".parse::<Choice>().unwrap_err().starts_with("unknown structure"));
+        let error = "tree".parse::<Choice>().unwrap_err();
+        assert!(error.starts_with("unknown structure, choose one of auto, list, "), "{error}");
     }
 
     #[test]
@@ -201,7 +200,8 @@ mod tests {
         for (place, named) in Named::ALL.iter().enumerate() {
             assert_eq!(Named::ALL.iter().position(|other| other == named), Some(place));
         }
-        assert_eq!(Named::list().plan(Preset::Fast, None), Plan::List);
+        assert_eq!(Named::list().plan(Preset::Fast, None), Some(Plan::List));
+        assert!(Named::ALL.iter().all(|named| named.is_wide() == (named.name == "wide")));
         assert!(Named::assumed().is_candidate);
         assert_eq!(Named::list().title(Preset::Fast), "list");
         assert_eq!(Named::assumed().title(Preset::Fast), "kdtree fast");

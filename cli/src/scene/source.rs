@@ -6,7 +6,7 @@ use hitscan::{
     asset::{Asset, AssetError, Kind},
     bake::Baker,
     glam::Vec3,
-    primitives::{Indices, Normals, Primitives, Renumbering, Reordered, TexCoords},
+    primitives::{Indices, Normals, Primitives, Renumbering, Reordered, Soup, TexCoords},
     render::{Materials, Textures},
 };
 
@@ -32,8 +32,8 @@ pub enum Source {
     Asset {
         /// Its words.
         words: Vec<u32>,
-        /// Where its vertices are, if they stand on a lattice.
-        positions: Vec<Vec3>,
+        /// Its triangles, if they are stored otherwise than as a mesh.
+        unpacked: Option<Box<Geometry>>,
     },
 }
 
@@ -71,9 +71,9 @@ impl Geometry {
     /// is said on standard error.
     pub fn load(path: &Path, textures: Option<u16>) -> Result<Self, Failure> {
         let mut model = Model::load(path)?;
-        let say = |warning: &str| warn(&format!("{}: {warning}", path.display()));
-        model.warnings.iter().for_each(|warning| say(warning));
-        let skin = textures.and_then(|most| Skin::of_model(&mut model, most, |warning| say(&warning)));
+        let skin = textures.map_or(Ok(None), |most| Skin::of_model(&mut model, most));
+        let skin = skin.map_err(|fault| LoadError { path: path.to_owned(), line: None, fault })?;
+        model.warnings.iter().for_each(|warning| warn(&format!("{}: {warning}", path.display())));
         let vertices = model.vertices.into_iter().map(Vec3::from_array).collect();
         let palette = Palette::of_model(&model.materials, model.material_ids);
         let name = path.to_string_lossy().to_ascii_lowercase();
@@ -84,6 +84,25 @@ impl Geometry {
             placements: model.placements,
             ..Self::new(vertices, model.triangles, palette)
         })
+    }
+
+    /// The triangles of an asset that has them otherwise than as a mesh: on a lattice, or as a soup.
+    fn unpacked(asset: &Asset<'_>) -> Result<Option<Self>, Error> {
+        let has = |kind| asset.sections().any(|section| section.kind == kind);
+        let (vertices, triangles): (Vec<Vec3>, Vec<[u32; 3]>) = if has(Kind::LatticeVertices) {
+            let mesh: LatticeMesh<'_> = asset.read()?;
+            let corners = (0..mesh.len()).filter_map(|triangle| mesh.indices().get(triangle));
+            (mesh.positions().collect(), corners.collect())
+        } else if has(Kind::Soup) {
+            let soup: Soup<'_> = asset.read()?;
+            let mut corners = vec![[[0.0; 3]; 3]; soup.numbers() as usize];
+            soup.facets().iter().for_each(|facet| corners[facet.number as usize] = facet.corners);
+            let vertices = corners.into_iter().flatten().map(Vec3::from_array);
+            (vertices.collect(), (0..soup.numbers()).map(|n| [3 * n, 3 * n + 1, 3 * n + 2]).collect())
+        } else {
+            return Ok(None);
+        };
+        Ok(Some(Self::new(vertices, triangles, Palette::default())))
     }
 
     /// How many triangles there are.
@@ -113,9 +132,11 @@ impl Geometry {
 pub struct View<'a> {
     /// The triangles.
     pub mesh: Mesh<'a>,
+    /// The same as an asset has them, if that is in the order of its leaves: its structure is over these.
+    pub soup: Option<Soup<'a>>,
     /// Their materials, if it names any.
     pub materials: Option<Materials<'a>>,
-    /// The pictures on them, and where in these the vertices lie, if there are any.
+    /// The pictures on those of an asset, and where in these the vertices lie, if there are any.
     pub textures: Option<(Textures<'a>, TexCoords<'a>)>,
     /// The normals of an asset's vertices, if it has any.
     pub normals: Option<Normals<'a>>,
@@ -152,7 +173,7 @@ impl Source {
         let source = if marked || path.extension().is_some_and(|extension| extension == "hits") {
             Self::load_asset(path)?
         } else if path.extension().is_some_and(|extension| extension == "toml") {
-            Self::Asset { words: world::load(path, &StructureArgs::default())?, positions: Vec::new() }
+            Self::Asset { words: world::load(path, &StructureArgs::default(), textures)?, unpacked: None }
         } else {
             Self::Model(Geometry::load(path, textures).map_err(|failure| mention_assets(failure, path))?)
         };
@@ -170,8 +191,8 @@ impl Source {
         }
         // Whatever else the asset is for, its header, table and checksum must be right.
         let asset = Asset::from_words(&words).map_err(|error| damaged(path, error))?;
-        let positions = asset.read().map_or(Vec::new(), |mesh: LatticeMesh<'_>| mesh.positions().collect());
-        Ok(Self::Asset { words, positions })
+        let unpacked = Geometry::unpacked(&asset).map_err(|error| damaged(path, error))?;
+        Ok(Self::Asset { words, unpacked: unpacked.map(Box::new) })
     }
 
     /// The asset, if it is one of scenes that are placed.
@@ -213,27 +234,24 @@ impl Source {
                 let palette = &geometry.palette;
                 let materials = (!palette.materials.is_empty()).then(|| palette.as_materials());
                 let mesh = geometry.mesh().map_err(name)?;
-                let skin = geometry.skin.as_ref().map(|skin| Asset::from_words(skin.as_words())).transpose();
-                let textures = skin.map_err(|error| broken(hitscan::Error::from(error)))?;
-                let textures = textures.map(|skin| pictures(&skin)).transpose().map_err(broken)?.flatten();
                 let (y_up, seconds) = (geometry.y_up, 0.0);
-                Ok(View { mesh, materials, textures, normals: None, structure: None, renumbering: None, y_up, seconds })
+                let (soup, textures, normals, structure, renumbering) = (None, None, None, None, None);
+                Ok(View { mesh, soup, materials, textures, normals, structure, renumbering, y_up, seconds })
             }
             Self::Asset { .. } if self.world().is_some() => {
                 let what = format!("{}: is a world of placed scenes", path.display());
                 Err(Failure::new(what, "name one of the meshes that are placed"))
             }
-            Self::Asset { words, positions } => {
+            Self::Asset { words, unpacked } => {
                 let progress = Progress::spinner("checking the asset …");
                 let damaged = |error| damaged(path, error);
                 let asset = Asset::from_words(words).map_err(|error| damaged(error.into()))?;
                 let has = |kind| asset.sections().any(|section| section.kind == kind);
-                let mesh = if has(Kind::LatticeVertices) {
-                    let on_lattice: LatticeMesh<'_> = asset.read().map_err(damaged)?;
-                    Mesh::new(positions, on_lattice.indices()).map_err(|error| damaged(error.into()))?
-                } else {
-                    asset.read().map_err(damaged)?
+                let mesh = match unpacked {
+                    Some(geometry) => geometry.mesh()?,
+                    None => asset.read().map_err(damaged)?,
                 };
+                let soup = has(Kind::Soup).then(|| asset.read().map_err(damaged)).transpose()?;
                 let materials = has(Kind::Materials).then(|| asset.read().map_err(damaged)).transpose()?;
                 let textures = pictures(&asset).map_err(damaged)?;
                 let normals = has(Kind::Normals).then(|| asset.read().map_err(damaged)).transpose()?;
@@ -245,14 +263,14 @@ impl Source {
                 };
                 let renumbering = has(Kind::Numbers).then(|| asset.read().map_err(damaged)).transpose()?;
                 let (y_up, seconds) = (false, progress.finish());
-                Ok(View { mesh, materials, textures, normals, structure, renumbering, y_up, seconds })
+                Ok(View { mesh, soup, materials, textures, normals, structure, renumbering, y_up, seconds })
             }
         }
     }
 }
 
 /// The pictures of an asset and where its vertices lie in them, if it has both.
-fn pictures<'a>(asset: &Asset<'a>) -> Result<Option<(Textures<'a>, TexCoords<'a>)>, Error> {
+pub(super) fn pictures<'a>(asset: &Asset<'a>) -> Result<Option<(Textures<'a>, TexCoords<'a>)>, Error> {
     let has = |kind| asset.sections().any(|section| section.kind == kind);
     if has(Kind::Textures) && has(Kind::TexCoords) { Ok(Some((asset.read()?, asset.read()?))) } else { Ok(None) }
 }

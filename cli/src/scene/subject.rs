@@ -1,16 +1,19 @@
 use std::path::Path;
 
 use hitscan::{
-    Accelerator, Hit, Instance, Instances, Mesh, Primitives, Ray, Scene,
-    accel::{Bvh, DualSplit, KdTree, Structure},
-    asset::{Asset, AssetError, Kind, Stored},
+    Instance, Primitives,
+    asset::Asset,
+    bake::Baker,
     geometry::Aabb,
     glam::Vec3,
-    primitives::{Mapped, Smooth, Surface, TexCoords},
-    render::{Caster, Material, Materials, Textures},
+    primitives::{Mapped, Smooth, TexCoords},
+    render::{Materials, Textures},
 };
 
-use super::{Built, Palette, Queries, Source, StructureArgs, View, broken, normals_by_place, source::damaged};
+use super::{
+    Choice, Palette, Queries, Source, StructureArgs, View, Wide, broken, normals_by_place, placed::with_world,
+    source::pictures,
+};
 use crate::{
     failure::Failure,
     stage::{Up, glazed, plate},
@@ -25,12 +28,12 @@ pub struct Subject<'a> {
     pub scene: &'a dyn Queries,
     /// How many numbers its hits can have.
     pub primitives: u32,
-    body: Body<'a>,
+    pub(super) body: Body<'a>,
 }
 
 #[derive(Clone, Copy)]
-enum Body<'a> {
-    Mesh { view: &'a View<'a>, built: &'a Built },
+pub(super) enum Body<'a> {
+    Mesh { view: &'a View<'a>, structure: &'a str, time: &'a str },
     World { placed: &'a [Instance], boxes: &'a [Aabb], own: u64, bytes: usize, seconds: f64 },
 }
 
@@ -46,8 +49,19 @@ impl Source {
         if let Some(asset) = self.world() {
             return with_world(path, &asset, structure, smooth, visit);
         }
-        let view = self.view(path)?;
-        let built = view.build(structure.structure, structure.preset)?;
+        let mut view = self.view(path)?;
+        // As they would be baked, so that the picture of a mesh is that of its asset.
+        let skin = match self {
+            Self::Model(geometry) => geometry.skin.as_ref().map(|skin| skin.bake(Baker::new()).finish()),
+            Self::Asset { .. } => None,
+        };
+        if let Some(words) = &skin {
+            let skin = Asset::from_words(words).map_err(hitscan::Error::from);
+            view.textures = skin.and_then(|skin| pictures(&skin)).map_err(broken)?;
+        }
+        // A soup knows nothing of neighbours.
+        let instead = (smooth && view.soup.is_some()).then_some(Choice::Auto);
+        let choice = structure.structure.or(instead);
         let normals = if smooth { normals_by_place(&view.mesh) } else { Vec::new() };
         let shaded = match view.normals {
             Some(normals) if !smooth => Smooth::packed(view.mesh, normals),
@@ -56,12 +70,29 @@ impl Source {
         let coordinates = view.textures.map_or(TexCoords::new(&[]), |(_, coordinates)| coordinates);
         let mapped = Mapped::new(shaded, &view.mesh, coordinates);
         let renumbered = view.renumbered(mapped)?;
-        let scene = match &renumbered {
-            Some(triangles) => built.scene(triangles)?,
-            None => built.scene(&mapped)?,
+        let show = |scene: &dyn Queries, structure: &str, time: &str| {
+            let body = Body::Mesh { view: &view, structure, time };
+            visit(&Subject { scene, primitives: view.mesh.len(), body })
         };
-        let body = Body::Mesh { view: &view, built: &built };
-        visit(&Subject { scene: &*scene, primitives: view.mesh.len(), body })
+        if matches!(choice, Some(Choice::Named(named)) if named.is_wide()) {
+            if renumbered.is_some() {
+                let what = format!("{}: its triangles stand in another order than their numbers", path.display());
+                return Err(Failure::new(
+                    what,
+                    "name the mesh it was made from, or choose another structure than wide",
+                ));
+            }
+            let wide = Wide::new(view.mesh, structure.preset)?;
+            return show(&wide.scene(&mapped)?, &wide.describe(), &wide.time());
+        }
+        let built = view.build(choice, structure.preset)?;
+        let scene = match (&renumbered, &view.soup) {
+            (_, Some(soup)) if choice.is_none() => built.scene(soup)?,
+            (Some(triangles), _) => built.scene(triangles)?,
+            _ => built.scene(&mapped)?,
+        };
+        let time = format!("{} {}", built.name, built.time());
+        show(&*scene, &built.describe(view.mesh.len() as usize), &time)
     }
 }
 
@@ -128,7 +159,7 @@ impl Subject<'_> {
     /// What there is to say of the structure.
     pub fn structure(&self) -> String {
         match &self.body {
-            Body::Mesh { view, built } => built.describe(view.mesh.len() as usize),
+            Body::Mesh { structure, .. } => (*structure).to_owned(),
             Body::World { bytes, seconds: took, .. } => {
                 format!("two levels of the asset, {} bytes in all, checked in {}", count(*bytes), seconds(*took))
             }
@@ -138,127 +169,8 @@ impl Subject<'_> {
     /// The structure's name and how long it took.
     pub fn time(&self) -> String {
         match &self.body {
-            Body::Mesh { built, .. } => format!("{} {}", built.name, built.time()),
+            Body::Mesh { time, .. } => (*time).to_owned(),
             Body::World { seconds: took, .. } => format!("two levels checked in {}", seconds(*took)),
         }
     }
-}
-
-/// Placed scenes, which know their materials.
-#[derive(Debug)]
-struct World<'a, A, T> {
-    scene: Scene<T, Instances<'a, A, Smooth<'a>>>,
-    materials: &'a [Option<Materials<'a>>],
-}
-
-impl<A: Accelerator, T: Accelerator> Caster for World<'_, A, T> {
-    fn closest_hit(&self, ray: &Ray, _depth: u32) -> Option<Hit> {
-        self.scene.closest_hit(ray)
-    }
-
-    fn enter(&self, bundle: &hitscan::geometry::Bundle) -> hitscan::accel::Entries {
-        self.scene.enter(bundle)
-    }
-
-    fn closest_hit_from(&self, entries: &hitscan::accel::Entries, ray: &Ray) -> Option<Hit> {
-        self.scene.closest_hit_from(entries, ray)
-    }
-
-    fn any_hit(&self, ray: &Ray, _depth: u32) -> bool {
-        self.scene.any_hit(ray)
-    }
-
-    fn any_hit_near(&self, ray: &Ray, _depth: u32, last: &mut Option<u32>) -> bool {
-        self.scene.any_hit_near(ray, last)
-    }
-
-    fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
-        self.scene.surface(ray, hit)
-    }
-
-    fn material(&self, hit: &Hit, _surface: &Surface) -> Option<Material> {
-        let instances = self.scene.primitives();
-        let (instance, primitive) = instances.locate(hit.primitive)?;
-        let scene = instances.placed().get(instance as usize)?.scene();
-        let materials = self.materials.get(scene as usize)?;
-        Some(materials.map_or_else(glazed, |materials| materials.of(primitive)))
-    }
-
-    fn bounds(&self) -> Aabb {
-        self.scene.bounds()
-    }
-}
-
-impl<A: Accelerator + Sync, T: Accelerator + Sync> Queries for World<'_, A, T> {
-    fn count(&self, ray: &Ray) -> (Option<Hit>, u32) {
-        self.scene.count(ray)
-    }
-}
-
-/// Opens a world, without asking at every step which structure it has where all levels have a usual one.
-fn with_world<R>(
-    path: &Path,
-    asset: &Asset<'_>,
-    structure: &StructureArgs,
-    smooth: bool,
-    visit: impl FnOnce(&Subject<'_>) -> Result<R, Failure>,
-) -> Result<R, Failure> {
-    if structure.structure.is_some() {
-        let what = format!("{}: has its structures in it", path.display());
-        return Err(Failure::new(what, "give --structure to `hitscan bake`"));
-    }
-    let parts: Vec<Asset<'_>> = asset.parts().collect::<Result<_, _>>().map_err(|error| damaged(path, error))?;
-    let kind = |asset: &Asset<'_>| asset.read::<Structure<'_>>().ok().and_then(|structure| structure.kind());
-    let first = parts.first().and_then(kind);
-    let common = first.filter(|_| parts.iter().all(|part| kind(part) == first));
-    match (common, kind(asset)) {
-        (Some(Kind::KdTree), Some(Kind::Bvh)) => opened::<KdTree<'_>, Bvh<'_>, R>(path, asset, &parts, smooth, visit),
-        (Some(Kind::Bvh), Some(Kind::Bvh)) => opened::<Bvh<'_>, Bvh<'_>, R>(path, asset, &parts, smooth, visit),
-        (Some(Kind::DualSplit), Some(Kind::Bvh)) => {
-            opened::<DualSplit<'_>, Bvh<'_>, R>(path, asset, &parts, smooth, visit)
-        }
-        _ => opened::<Structure<'_>, Structure<'_>, R>(path, asset, &parts, smooth, visit),
-    }
-}
-
-fn opened<'a, A: Accelerator + Stored<'a> + Sync, T: Accelerator + Stored<'a> + Sync, R>(
-    path: &Path,
-    asset: &Asset<'a>,
-    parts: &[Asset<'a>],
-    smooth: bool,
-    visit: impl FnOnce(&Subject<'_>) -> Result<R, Failure>,
-) -> Result<R, Failure> {
-    let begun = std::time::Instant::now();
-    let damaged = |error: hitscan::Error| damaged(path, error);
-    let meshes: Vec<Mesh<'a>> = parts.iter().map(Asset::read).collect::<Result<_, _>>().map_err(damaged)?;
-    let materials: Vec<Option<Materials<'a>>> = parts
-        .iter()
-        .map(|part| match part.read() {
-            Err(hitscan::Error::Asset(AssetError::Missing { .. })) => Ok(None),
-            read => read.map(Some),
-        })
-        .collect::<Result<_, _>>()
-        .map_err(damaged)?;
-    let normals: Vec<Vec<Vec3>> =
-        meshes.iter().map(|mesh| if smooth { normals_by_place(mesh) } else { Vec::new() }).collect();
-    let mut scenes = Vec::new();
-    for ((part, mesh), normals) in parts.iter().zip(&meshes).zip(&normals) {
-        let structure: A = part.read().map_err(damaged)?;
-        scenes.push(Scene::new(structure, Smooth::new(*mesh, normals)).map_err(broken)?);
-    }
-    let placed: &[Instance] = asset.read().map_err(damaged)?;
-    let instances = Instances::new(&scenes, placed).map_err(broken)?;
-    let structure: T = asset.read().map_err(damaged)?;
-    let primitives = instances.numbers();
-    let scene = Scene::new(structure, instances).map_err(broken)?;
-    let world = World { scene, materials: &materials };
-    let boxes: Vec<Aabb> = scenes.iter().map(Scene::bounds).collect();
-    let body = Body::World {
-        placed,
-        boxes: &boxes,
-        own: meshes.iter().map(|mesh| u64::from(mesh.len())).sum(),
-        bytes: size_of_val(asset.as_words()),
-        seconds: begun.elapsed().as_secs_f64(),
-    };
-    visit(&Subject { scene: &world, primitives, body })
 }

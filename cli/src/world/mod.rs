@@ -50,8 +50,9 @@ struct Part {
     built: Built,
 }
 
-/// The asset of the world that a file describes.
-pub fn load(path: &Path, options: &StructureArgs) -> Result<Vec<u32>, Failure> {
+/// The asset of the world that a file describes, with pictures on its meshes of at most so many pixels along a side if they
+/// are wanted.
+pub fn load(path: &Path, options: &StructureArgs, textures: Option<u16>) -> Result<Vec<u32>, Failure> {
     let named = |what: &dyn std::fmt::Display, mend: &str| Failure::new(format!("{}: {what}", path.display()), mend);
     let structure = match options.structure {
         Some(Choice::Named(structure)) if structure == Named::list() => {
@@ -62,7 +63,7 @@ pub fn load(path: &Path, options: &StructureArgs) -> Result<Vec<u32>, Failure> {
     };
     let file = File::read(path)?;
     let (meshes, placed) = places::expand(&file).map_err(|what| named(&what, "mend the description"))?;
-    let parts = meshes.iter().map(|mesh| part(path, mesh, structure, options.preset));
+    let parts = meshes.iter().map(|mesh| part(path, mesh, structure, options.preset, textures));
     let parts: Vec<Part> = parts.collect::<Result<_, _>>()?;
     let mut placed: Vec<Instance> = placed.into_iter().map(|(part, place)| Instance::new(part, place)).collect();
 
@@ -81,18 +82,21 @@ pub fn load(path: &Path, options: &StructureArgs) -> Result<Vec<u32>, Failure> {
         if !part.geometry.palette.materials.is_empty() {
             asset = asset.materials(&part.geometry.palette.materials, part.geometry.palette.as_numbers());
         }
+        if let Some(skin) = &part.geometry.skin {
+            asset = skin.bake(asset);
+        }
         baker = baker.part(asset);
     }
     Ok(baker.instances(instances.placed()).structure(Bvh::open(&top).map_err(broken)?).finish())
 }
 
-/// Bakes the world that a file describes into an asset.
+/// Bakes the world that a file describes into an asset, without textures.
 ///
 /// # Errors
 ///
 /// What is wrong with the description, what it names, or the output.
 pub fn bake(path: &Path, output: &Path) -> Result<(), Failure> {
-    let words = load(path, &StructureArgs::default())?;
+    let words = load(path, &StructureArgs::default(), None)?;
     Ok(write_words(output, &words)?)
 }
 
@@ -102,13 +106,13 @@ pub fn write_words(path: &Path, words: &[u32]) -> Result<(), OutputError> {
 }
 
 /// A mesh that stands in a file beside `path`, or a plant that grows by itself, with its structure.
-fn part(path: &Path, mesh: &str, structure: &Named, preset: Preset) -> Result<Part, Failure> {
+fn part(path: &Path, mesh: &str, structure: &Named, preset: Preset, textures: Option<u16>) -> Result<Part, Failure> {
     let geometry = if let Some(seed) = mesh.strip_prefix("plant:").and_then(|seed| seed.parse().ok()) {
         plant::grow(seed)
     } else {
         let beside = path.parent().unwrap_or(Path::new("")).join(mesh);
         // Neither an asset nor a world, which might be this one.
-        Geometry::load(&beside, None)?
+        Geometry::load(&beside, textures)?
     };
     let built = Built::named(&geometry.mesh()?, structure, preset, None)?;
     Ok(Part { geometry, built })

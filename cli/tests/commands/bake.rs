@@ -223,3 +223,46 @@ fn normals_are_baked_for_smooth_pictures() {
     assert!(off(&baked) * 5 < off(&flat), "{} {}", off(&baked), off(&flat));
     folder.refuse("bake waves.obj -o none.hits --normals --lattice");
 }
+
+#[test]
+fn a_soup_answers_and_looks_like_its_mesh() {
+    let folder = Folder::new();
+    folder.write("sheet.mtl", "newmtl red\nKd 1 0 0\nnewmtl blue\nKd 0 0 1\n");
+    folder.write("sheet.obj", sheet());
+    let rays: Vec<[f32; 6]> =
+        (0..500).map(|n| [(n % 25) as f32 * 0.47, 9.0, (n / 25) as f32 * 0.59, 0.01, -1.0, 0.02]).collect();
+    folder.write_rays("rays", &rays);
+    folder.succeed("cast sheet.obj rays -o expected");
+    let view = "--size 48x32 --samples 1";
+    for smooth in ["", "--smooth"] {
+        folder.succeed(&format!("render sheet.obj {view} {smooth} -o mesh{smooth}.png"));
+    }
+    for options in ["", "-p fast", "-s grid", "-s bvh", "-s dual-split -p small"] {
+        let text = folder.succeed(&format!("bake sheet.obj -o soup.hits --soup {options}"));
+        let bytes = |what: &str| -> usize {
+            let line = text.lines().find(|line| line.starts_with(what)).unwrap();
+            line[20..].split_whitespace().next().unwrap().replace(',', "").parse().unwrap()
+        };
+        let size = folder.read("soup.hits").len();
+        assert_eq!(["geometry", "structure", "materials", "header"].map(bytes).iter().sum::<usize>(), size);
+        folder.succeed("cast soup.hits rays -o hits");
+        assert!(folder.read("hits") == folder.read("expected"), "{options}");
+        folder.succeed("cast soup.hits rays -s bvh -o hits");
+        assert!(folder.read("hits") == folder.read("expected"), "{options}");
+        for smooth in ["", "--smooth"] {
+            folder.succeed(&format!("render soup.hits {view} {smooth} -o soup.png"));
+            assert!(folder.read("soup.png") == folder.read(&format!("mesh{smooth}.png")), "{options} {smooth}");
+        }
+        let said = folder.succeed("info soup.hits").split_whitespace().collect::<Vec<_>>().join(" ");
+        let places = (bytes("geometry") - 4 - 288 * 4) / 40;
+        assert!(
+            said.replace(',', "").contains(&format!("soup {places} places")) && said.contains("triangles 288"),
+            "{said}"
+        );
+    }
+    for unfit in ["-s list", "-s octree", "-s kdtree-compact", "--lattice", "--fit 64K", "--textures", "--target m4"] {
+        folder.refuse(&format!("bake sheet.obj -o none.hits --soup {unfit}"));
+    }
+    folder.refuse("info soup.hits --target m4");
+    folder.succeed("info soup.hits --target m4 -s kdtree");
+}

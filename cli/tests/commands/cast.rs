@@ -1,6 +1,9 @@
 //! Rays: the same answers from every structure, mesh or asset, on any number of threads.
 
-use crate::folder::{Folder, TETRAHEDRON};
+use crate::{
+    bake::waves,
+    folder::{Folder, TETRAHEDRON},
+};
 
 /// Rays from a sphere around the tetrahedron towards points near it, the same every time.
 fn rays(count: usize) -> Vec<[f32; 6]> {
@@ -83,4 +86,37 @@ fn differences_are_counted_and_decide_the_code() {
     assert_eq!(output.status.code(), Some(1));
     let text = String::from_utf8(output.stdout).unwrap();
     assert!(text.starts_with("500 rays, ") && text.contains("hit only in A") && text.contains("\nray "), "{text}");
+}
+
+/// The structure that no asset holds answers and looks like the others, and is refused where it cannot.
+#[test]
+fn the_structure_of_hosts_answers_like_the_list() {
+    let folder = Folder::new();
+    folder.write("waves.obj", waves(20));
+    let rays: Vec<[f32; 6]> =
+        (0..2000).map(|n| [(n % 50) as f32 * 0.43, 5.0, (n / 50) as f32 * 0.51, 0.1, -1.0, 0.2]).collect();
+    folder.write_rays("rays", &rays);
+    folder.succeed("bake waves.obj -o lattice.hits --lattice");
+    folder.succeed("bake waves.obj -o soup.hits --soup");
+    for scene in ["waves.obj", "lattice.hits", "soup.hits"] {
+        for query in ["closest", "any", "count"] {
+            folder.succeed(&format!("cast {scene} rays -q {query} -s list -o list"));
+            for preset in ["small", "balanced", "fast"] {
+                folder.succeed(&format!("cast {scene} rays -q {query} -s wide -p {preset} -o wide"));
+                assert!(folder.read("wide") == folder.read("list"), "{scene} {query} {preset}");
+            }
+        }
+        for smooth in ["", "--smooth"] {
+            folder.succeed(&format!("render {scene} --size 48x32 --samples 1 {smooth} -o list.png -s list"));
+            let text = folder.succeed(&format!("render {scene} --size 48x32 --samples 1 {smooth} -o wide.png -s wide"));
+            assert!(text.contains("wide balanced, ") && text.contains(" bytes ("), "{text}");
+            assert!(folder.read("wide.png") == folder.read("list.png"), "{scene} {smooth}");
+        }
+    }
+    folder.succeed("bake waves.obj -o kept.hits -s bvh --keep-numbers");
+    for command in ["bake waves.obj -o a.hits -s wide", "info waves.obj -s wide", "render -s wide -o a.png"] {
+        let error = folder.refuse(command);
+        assert!(error.contains("--structure wide: only renders, casts and compares meshes: choose another"), "{error}");
+    }
+    assert!(folder.refuse("cast kept.hits rays -s wide").contains("name the mesh it was made from"));
 }

@@ -7,6 +7,10 @@ fn squares(side: u32, colors: &[[u8; 3]]) -> Vec<u8> {
     let (width, height) = (4 * side, colors.len() as u32 / 4 * side);
     let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x / side + y / side * 4) as usize));
     let pixels: Vec<[u8; 3]> = pixels.map(|square| colors[square]).collect();
+    encode(width, height, &pixels)
+}
+
+fn encode(width: u32, height: u32, pixels: &[[u8; 3]]) -> Vec<u8> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, width, height);
     encoder.set_color(png::ColorType::Rgb);
@@ -112,14 +116,20 @@ fn what_is_missing_is_said_and_drawn_plain() {
     folder.write("sign.obj", SIGN);
     folder.write("sign.mtl", &red);
     let (said, plain) = draw();
-    assert!(said.contains("texture `skin.png`: no such file") && said.contains("drawn without it"), "{said}");
-    assert!(said.lines().count() == 1 && plain[0] > 20 && plain[2] == 0, "{said} {plain:?}");
+    assert_eq!(said, "hitscan: warning: sign.obj: without texture `skin.png`: no such file: check the path\n");
+    assert!(plain[0] > 20 && plain[2] == 0, "{plain:?}");
     let whole = squares(8, &[WHITE; 4]);
-    for damaged in [&b""[..], b"P6 1 1 255 abc", &whole[..40], &whole[..whole.len() / 2]] {
-        folder.write("skin.png", damaged);
+    for (bad, mend) in [
+        (&b""[..], "neither PNG nor JPEG: convert it to one"),
+        (b"P6 1 1 255 abc", "neither PNG nor JPEG: convert it to one"),
+        (&encode(10_000, 1, &[WHITE; 10_000]), "too large: make it at most 8192 pixels wide and high"),
+        (&whole[..40], "): save it again"),
+        (&whole[..whole.len() / 2], "): save it again"),
+    ] {
+        folder.write("skin.png", bad);
         let (said, shown) = draw();
-        assert!(said.contains("texture `skin.png`: ") && said.lines().count() == 1, "{said}");
-        assert_eq!(shown, plain);
+        assert!(said.contains("without texture `skin.png`: ") && said.contains(mend), "{said}");
+        assert_eq!((said.lines().count(), shown), (1, plain));
     }
     folder.write("skin.png", &whole);
     assert_eq!(draw(), (String::new(), plain));
@@ -135,7 +145,46 @@ fn what_is_missing_is_said_and_drawn_plain() {
         assert!(said.contains(" of 4 triangles lack texture coordinates"), "{to}: {said}");
         assert!(shown[2] > 10 && shown[2] < textured.1[2], "{to}: {shown:?}");
     }
+    // Who does not ask for textures hears nothing of them.
+    for command in ["info sign.obj", "bake sign.obj -o a.hits"] {
+        let output = folder.run(command);
+        assert!(output.status.success() && output.stderr.is_empty(), "{command}: {output:?}");
+    }
     folder.write("sign.obj", SIGN);
     let error = folder.refuse("bake sign.obj -o a.hits --textures=0");
     assert!(error.contains("--textures"), "{error}");
+}
+
+#[test]
+fn textures_of_placed_parts_are_those_of_their_models() {
+    let folder = Folder::new();
+    folder.write("sign.obj", SIGN);
+    folder.write("sign.mtl", MATERIAL);
+    folder.write("skin.png", squares(8, &[RED, RED, GREEN, GREEN, BLUE, BLUE, BLUE, BLUE]));
+    folder.write("one.toml", "[part.a]\nmesh = \"sign.obj\"\n[[place]]\npart = \"a\"\n");
+    folder.write(
+        "world.toml",
+        "[part.a]\nmesh = \"sign.obj\"\n[part.b]\nmesh = \"tetrahedron.obj\"\n[[place]]\npart = \"b\"\nat = [9, 9, 9]\n\
+         [[place]]\npart = \"a\"\nscale = 0.5\n[[place]]\npart = \"a\"\nat = [1, 0, 0]\nscale = 0.5\n",
+    );
+    let [model, one, twice] = ["sign.obj", "one.toml", "world.toml"].map(|scene| {
+        folder.succeed(&format!("render {scene} -o picture.png --up y {VIEW}"));
+        folder.read("picture.png")
+    });
+    assert!(one == model);
+    // Half as large and side by side: half of the area, and the same colours.
+    let (model, placed) = (shares(&model), shares(&twice));
+    for (large, small) in model.into_iter().zip(placed).take(3) {
+        assert!(small > 0 && (small * 2).abs_diff(large) <= 2, "{model:?} {placed:?}");
+    }
+    for structure in ["kdtree", "bvh", "grid"] {
+        folder.succeed(&format!("bake world.toml -o world.hits --textures=2048 -s {structure}"));
+        folder.succeed(&format!("render world.hits -o asset.png {VIEW}"));
+        assert!(folder.read("asset.png") == twice, "{structure}");
+    }
+    let with = folder.read("world.hits").len();
+    folder.succeed("bake world.toml -o world.hits -s grid");
+    assert!(folder.read("world.hits").len() + 256 < with);
+    folder.succeed(&format!("render world.hits -o plain.png {VIEW}"));
+    assert_eq!(shares(&folder.read("plain.png"))[..2], [0, 0]);
 }

@@ -115,7 +115,7 @@ fn descriptions_that_say_nothing_sensible_are_refused() {
             assert!(error.contains(why), "{text}: {error}");
         }
     }
-    for options in ["--lattice", "--fit 3K", "--target m4", "-s list"] {
+    for options in ["--lattice", "--normals", "--fit 3K", "--target m4", "-s list"] {
         folder.refuse(&format!("bake good.toml -o out.hits {options}"));
     }
     folder.succeed("bake good.toml -o good.hits");

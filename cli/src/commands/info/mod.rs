@@ -2,7 +2,9 @@ mod world;
 
 use std::{path::PathBuf, process::ExitCode};
 
-use hitscan::{LatticeMesh, Mesh, Primitives, asset::Asset, bake, geometry::Aabb, primitives::Indices};
+use hitscan::{
+    LatticeMesh, Mesh, Primitives, accel::Structure, asset::Asset, bake, geometry::Aabb, primitives::Indices,
+};
 
 use super::{line, predict, print};
 use crate::{
@@ -46,6 +48,7 @@ impl Info {
         let mut text = format!("{}\n", self.model.display());
         describe_mesh(&mut text, &view, &anatomy);
         describe_lattice(&mut text, &source, &view);
+        describe_soup(&mut text, &view);
         describe_structure(&mut text, &built, &view)?;
         self.describe_instancing(&mut text, &source, &built, &view)?;
         let mut asset = None;
@@ -56,9 +59,13 @@ impl Info {
         if let Some(chip) = self.target {
             let asset = asset.unwrap_or_else(|| bytes_of(&view.mesh) + built.bytes());
             match on_lattice(&source) {
-                Some(mesh) => predict(&mut text, chip, &built, &mesh, asset),
-                None => predict(&mut text, chip, &built, &view.mesh, asset),
-            }?;
+                Some(mesh) => predict(&mut text, chip, &built, &mesh, asset)?,
+                None if view.soup.is_some() && self.structure.structure.is_none() => {
+                    let what = format!("{}: what a soup takes on a chip is not known", self.model.display());
+                    return Err(Failure::new(what, "name a --structure for its triangles"));
+                }
+                None => predict(&mut text, chip, &built, &view.mesh, asset)?,
+            }
         }
         print(&text)?;
         Ok(ExitCode::SUCCESS)
@@ -150,24 +157,36 @@ fn describe_lattice(text: &mut String, source: &Source, view: &View<'_>) {
     }
 }
 
+/// How often the triangles of a soup stand in it.
+fn describe_soup(text: &mut String, view: &View<'_>) {
+    if let Some(soup) = &view.soup {
+        let times = f64::from(soup.len()) / f64::from(soup.numbers().max(1));
+        line(text, "soup", format!("{} places, {times:.2} of each triangle", count(soup.len())));
+    }
+}
+
 fn describe_structure(text: &mut String, built: &Built, view: &View<'_>) -> Result<(), Failure> {
     let primitives = view.mesh.len();
     line(text, "structure", built.describe(primitives as usize));
     if let Some(why) = &built.why {
         line(text, "chosen because", why);
     }
-    let structure = built.structure(&view.mesh)?;
-    if structure.kind().is_none() {
-        line(text, "expected per ray", format!("{} tests", count(primitives)));
-        return Ok(());
-    }
-    let shape = Shape::of(&structure);
-    line(text, "nodes", count(shape.nodes));
-    line(text, "references", count(shape.references));
-    line(text, "depth", shape.depth);
-    let (nodes, tests) = (shape.expected_nodes, shape.expected_tests);
-    line(text, "expected per ray", format!("{nodes:.1} nodes, {tests:.1} tests, if nothing is hit"));
+    describe_shape(text, &built.structure(&view.mesh)?, primitives as usize);
     Ok(())
+}
+
+/// What a structure over so many things is made of.
+fn describe_shape(text: &mut String, structure: &Structure<'_>, things: usize) {
+    if structure.kind().is_none() {
+        line(text, "expected per ray", format!("{} tests", count(things)));
+        return;
+    }
+    let Shape { nodes, references, depth, expected_nodes, expected_tests } = Shape::of(structure);
+    line(text, "nodes", count(nodes));
+    line(text, "references", count(references));
+    line(text, "depth", depth);
+    let expected = format!("{expected_nodes:.1} nodes, {expected_tests:.1} tests, if nothing is hit");
+    line(text, "expected per ray", expected);
 }
 
 fn describe_sections(text: &mut String, asset: &Asset<'_>) {

@@ -2,10 +2,10 @@ use std::path::Path;
 
 use hitscan::{Instance, Mesh, Primitives, accel::Structure, asset::Asset};
 
-use super::{super::line, describe_sections};
+use super::{super::line, describe_sections, describe_shape};
 use crate::{
     failure::Failure,
-    scene::{Shape, Source, StructureArgs, broken},
+    scene::{Source, StructureArgs, broken},
     units::count,
 };
 
@@ -41,12 +41,8 @@ pub fn describe(
 
 /// One of the two levels: its structure over so many things.
 fn describe_level(text: &mut String, structure: &Structure<'_>, what: &str, number: usize) {
-    let shape = Shape::of(structure);
     let name = structure.kind().map_or("list".to_owned(), |kind| kind.to_string());
     line(text, what, count(number));
     line(text, "structure", format!("{name}, {} bytes", count(size_of_val(structure.as_words()))));
-    line(text, "nodes", count(shape.nodes));
-    line(text, "depth", shape.depth);
-    let (nodes, tests) = (shape.expected_nodes, shape.expected_tests);
-    line(text, "expected per ray", format!("{nodes:.1} nodes, {tests:.1} tests, if nothing is hit"));
+    describe_shape(text, structure, number);
 }

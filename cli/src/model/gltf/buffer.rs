@@ -1,11 +1,13 @@
 //! The bytes behind a glTF file's accessors.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use gltf::buffer::Source;
 use gltf::image;
 use gltf::texture::{MagFilter, WrappingMode};
 
+use crate::model::error::excerpt;
 use crate::model::{Contents, Fault, Image, read_companion};
 
 /// Reads a buffer from the file itself, from its own address, or from a file beside it; never from
@@ -28,15 +30,31 @@ pub(super) fn load_buffer(buffer: &gltf::Buffer<'_>, blob: Option<&[u8]>, folder
     data.map_err(|reason| Fault::Buffer { uri: uri.to_owned(), reason })
 }
 
-/// A texture's picture: in a buffer, in its own address, or in a file beside this one.
-pub(super) fn load_image(texture: &gltf::Texture<'_>, buffers: &[Vec<u8>], folder: &Path) -> Image {
+/// A texture's picture: in a file beside this one, or of this one, in a buffer or in its own address; its bytes are added
+/// to `pictures` then, unless they are there already.
+pub(super) fn load_image(
+    texture: &gltf::Texture<'_>,
+    pictures: &mut BTreeMap<usize, Result<Vec<u8>, String>>,
+    buffers: &[Vec<u8>],
+    folder: &Path,
+) -> Image {
+    let number = texture.source().index();
+    let mut here = |load: &dyn Fn() -> Result<Vec<u8>, String>| {
+        pictures.entry(number).or_insert_with(load);
+        Contents::Here(number)
+    };
     let contents = match texture.source().source() {
-        image::Source::View { view, .. } => {
+        image::Source::View { view, .. } => here(&|| {
             let end = view.offset().checked_add(view.length());
             let bytes = end.and_then(|end| buffers.get(view.buffer().index())?.get(view.offset()..end));
-            Contents::Here(bytes.map(<[u8]>::to_vec).ok_or_else(|| "not within its buffer".to_owned()))
+            bytes.map(<[u8]>::to_vec).ok_or_else(|| "not within its buffer: export the model again".to_owned())
+        }),
+        image::Source::Uri { uri, .. } if uri.starts_with("data:") => {
+            here(&|| decode(uri).map_err(|why| format!("{}: export the model again", excerpt(&why))))
         }
-        image::Source::Uri { uri, .. } if uri.starts_with("data:") => Contents::Here(decode(uri)),
+        image::Source::Uri { uri, .. } if uri.contains("://") => {
+            here(&|| Err(format!("`{}` is not a local file: fetch it, and name that in the model", excerpt(uri))))
+        }
         image::Source::Uri { uri, .. } => {
             let name = percent_encoding::percent_decode_str(uri).decode_utf8_lossy();
             Contents::File(folder.join(&*name))

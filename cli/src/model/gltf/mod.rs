@@ -30,7 +30,7 @@ pub(super) fn read(bytes: &[u8], folder: &Path) -> Result<Model, LoadError> {
     let mut model = Model::default();
     for material in document.materials() {
         let texture = material.pbr_metallic_roughness().base_color_texture();
-        let image = texture.map(|info| load_image(&info.texture(), &buffers, folder));
+        let image = texture.map(|info| load_image(&info.texture(), &mut model.pictures, &buffers, folder));
         model.push_material(shading(&material, image))?;
     }
     let Some(scene) = document.default_scene().or_else(|| document.scenes().next()) else {

@@ -2,6 +2,7 @@
 
 use super::super::{load_bytes, survives_damage};
 use super::*;
+use std::borrow::Cow;
 use std::fs;
 
 /// Four corners of a square and the indices 0 1 2 0 2 3.
@@ -122,22 +123,43 @@ fn textured() -> String {
     )
 }
 
+/// The bytes of the picture on the first material.
+fn picture(model: &Model) -> Result<Cow<'_, [u8]>, String> {
+    model.read_picture(&model.materials[0].image.as_ref().unwrap().contents)
+}
+
 #[test]
 fn pictures_and_where_they_lie_are_read() {
     let model = load_bytes("a.gltf", textured().as_bytes()).unwrap();
     let image = model.materials[0].image.as_ref().unwrap();
-    assert_eq!((image.read().unwrap().as_slice(), image.nearest, image.clamp), (b"PIC".as_slice(), true, true));
+    assert_eq!((&*picture(&model).unwrap(), image.nearest, image.clamp), (b"PIC".as_slice(), true, true));
     assert_eq!(model.mapping.of(0), Some([[0.0, 0.0], [2.0, 0.0], [0.0, 1.0]]));
-    assert_eq!((model.mapping.of(1), model.material_ids.as_slice()), (None, [0, 1].as_slice()));
-    assert!(model.materials[1].image.is_none() && model.warnings.len() == 1, "{:?}", model.warnings);
+    assert_eq!((model.mapping.of(1), model.materials.len(), &model.warnings[..]), (None, 1, &[][..]));
 
     let with = |from: &str, to: &str| load_bytes("a.gltf", textured().replace(from, to).as_bytes()).unwrap();
-    let linked = with(r#""bufferView":2,"mimeType":"image/png""#, r#""uri":"no%20where.png""#);
-    let image = linked.materials[0].image.clone().unwrap();
-    assert!(image.to_string().ends_with("no where.png`") && image.read().is_err(), "{image}");
+    let at = |place: &str| with(r#""bufferView":2,"mimeType":"image/png""#, &format!(r#""uri":"{place}""#));
+    let linked = at("no%20where.png");
+    let name = linked.materials[0].image.as_ref().unwrap().contents.to_string();
+    assert!(name.ends_with("no where.png`") && linked.pictures.is_empty(), "{name}");
+    assert_eq!(picture(&linked).unwrap_err(), "no such file: check the path");
+    assert_eq!(&*picture(&at("data:image/png;base64,UElD")).unwrap(), b"PIC");
+    let remote = picture(&at("https://a/b.png")).unwrap_err();
+    assert_eq!(remote, "`https://a/b.png` is not a local file: fetch it, and name that in the model");
     let beyond = with(r#""byteOffset":60,"byteLength":3"#, r#""byteOffset":60,"byteLength":9"#);
-    assert!(beyond.materials[0].image.clone().unwrap().read().is_err());
-    let unreadable = with(r#""type":"VEC2""#, r#""type":"VEC3""#);
-    assert!(unreadable.mapping.of(0).is_none() && unreadable.warnings.len() == 1);
+    assert_eq!(picture(&beyond).unwrap_err(), "not within its buffer: export the model again");
+    assert!(picture(&at("data:image/png;base64,!")).unwrap_err().ends_with(": export the model again"));
+    assert!(with(r#""type":"VEC2""#, r#""type":"VEC3""#).mapping.of(0).is_none());
     survives_damage("a.gltf", textured().as_bytes());
+}
+
+#[test]
+fn a_picture_of_several_materials_is_loaded_once() {
+    let material = r#"{"pbrMetallicRoughness":{"baseColorTexture":{"index":0,"texCoord":1},"metallicFactor":0}}"#;
+    let twice = textured().replace(material, &format!("{material},{material}"));
+    let twice = twice.replace(r#""source":0,"sampler":0"#, r#""source":1,"sampler":0"#);
+    // The first one nobody names.
+    let twice = twice.replace(r#""images":["#, r#""images":[{"bufferView":0,"mimeType":"image/png"},"#);
+    let model = load_bytes("a.gltf", twice.as_bytes()).unwrap();
+    assert_eq!(model.pictures, [(1, Ok(b"PIC".to_vec()))].into());
+    assert!(model.materials.iter().all(|material| material.image == model.materials[0].image));
 }
