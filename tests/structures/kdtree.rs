@@ -1,9 +1,9 @@
 //! kD-trees: the words asked for suffice and the bytes allowed hold, whatever the options.
 
 use crate::common::meshes::{crossing, hair, identical, random, separate};
-use crate::common::{FAMILIES, Random, adversarial_mesh};
+use crate::common::{FAMILIES, Random, adversarial_mesh, seal::checksum};
 use hitscan::{
-    Arena, KdTree, Mesh, Primitives,
+    Arena, CompactKdTree, KdTree, Mesh, Primitives,
     error::BuildError,
     kdtree::{Options, Split},
 };
@@ -110,5 +110,17 @@ fn bytes_that_are_allowed_are_used() {
     for bytes in [most * 3 / 4, most / 2, most / 4] {
         let size = build(&mesh, &mut memory, &free.fit(bytes)).unwrap().as_words().len() * 4;
         assert!(size <= bytes && size > bytes * 9 / 10, "{size} of {bytes}");
+    }
+}
+
+#[test]
+fn compact_cells_are_halved_as_they_always_were() {
+    let (vertices, triangles) = random(300, 0.5);
+    let mesh = Mesh::new(&vertices, &triangles[..]).unwrap();
+    for (split, expected) in [(Split::Midpoint, 0), (Split::Median, 0)] {
+        let options = Options { split, ..Options::fast() };
+        let mut memory = vec![0; CompactKdTree::words(triangles.len(), &options)];
+        let tree = CompactKdTree::build(&mesh, &mut Arena::new(&mut memory), &options).unwrap();
+        assert_eq!(checksum(tree.as_words()), expected, "{split:?}");
     }
 }
