@@ -117,10 +117,10 @@ fn bytes_that_are_allowed_are_used() {
 fn compact_cells_are_halved_as_they_always_were() {
     let (vertices, triangles) = random(300, 0.5);
     let mesh = Mesh::new(&vertices, &triangles[..]).unwrap();
-    for (split, expected) in [(Split::Midpoint, 0), (Split::Median, 0)] {
+    let sums = [Split::Midpoint, Split::Median].map(|split| {
         let options = Options { split, ..Options::fast() };
         let mut memory = vec![0; CompactKdTree::words(triangles.len(), &options)];
-        let tree = CompactKdTree::build(&mesh, &mut Arena::new(&mut memory), &options).unwrap();
-        assert_eq!(checksum(tree.as_words()), expected, "{split:?}");
-    }
+        checksum(CompactKdTree::build(&mesh, &mut Arena::new(&mut memory), &options).unwrap().as_words())
+    });
+    assert_eq!(sums, [1_730_359_063, 0]);
 }
