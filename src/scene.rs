@@ -279,8 +279,9 @@ impl<A: Accelerator, P: Primitives> Scene<A, P> {
         false
     }
 
+    /// The first hit with a primitive that is wanted.
     #[inline(always)]
-    fn intersect(&self, index: u32, ray: &PreparedRay, span: Span) -> Option<Hit> {
+    pub(crate) fn intersect(&self, index: u32, ray: &PreparedRay, span: Span) -> Option<Hit> {
         // Compared first: where there are no masks, nothing is left of this.
         let mask = self.primitives.mask(index);
         if mask != u32::MAX && mask & ray.ray().mask == 0 {

@@ -12,6 +12,7 @@ use hitscan::{
     geometry::{Aabb, Bundle},
     glam::Vec3,
     primitives::{Primitives, from_fn},
+    query::ItemBuffer,
     render::{Camera, Light, Renderer, Tile},
 };
 
@@ -54,6 +55,26 @@ fn same<A: Accelerator, P: Primitives>(scene: &Scene<A, P>, camera: &Camera, til
     }
 }
 
+/// All rays of a tile at once hit what each hits by itself.
+fn same_at_once<A: Accelerator, P: Primitives>(
+    scene: &Scene<A, P>,
+    camera: &Camera,
+    tile: &Tile,
+    side: u32,
+    what: &str,
+) {
+    let Some(pencil) = camera.pencil(tile, side, side) else { return };
+    let mut hits = ItemBuffer::new();
+    scene.closest_hits(&pencil, &mut hits);
+    for (x, y) in tile.pixels() {
+        let (column, row) = (x - tile.x, y - tile.y);
+        let ray = camera.ray(x as f32 + 0.5, y as f32 + 0.5, side, side);
+        assert_eq!(pencil.ray(column, row), ray);
+        let (at_once, plain) = (hits.get(column, row), scene.closest_hit(&ray));
+        assert_eq!(bits(at_once), bits(plain), "{what}: {ray:?} of {pencil:?}");
+    }
+}
+
 #[test]
 fn entries_hold_all_that_a_tile_can_meet() {
     let mut random = Random::new(41);
@@ -72,6 +93,9 @@ fn entries_hold_all_that_a_tile_can_meet() {
                 let (x, y) = if random.one_in(2) { (side / 2, side / 2) } else { (at(&mut random), at(&mut random)) };
                 let tile = Tile { x, y, width: 4.min(side - x), height: 4.min(side - y) };
                 same(&scene, &camera, &tile, side, name);
+                same_at_once(&scene, &camera, &tile, side, name);
+                let tile = Tile { x: x & !7, y: y & !7, width: 8, height: 8 };
+                same_at_once(&scene, &camera, &tile, side, name);
                 let ray = camera.ray(x as f32, y as f32, side, side);
                 hits += u32::from(scene.any_hit(&ray));
             }
@@ -101,6 +125,7 @@ fn shapes_that_are_not_certified_keep_their_hits() {
             let camera = camera(&mut random, family, &vertices);
             for tile in [Tile { x: 14, y: 14, width: 4, height: 4 }, Tile { x: 3, y: 20, width: 8, height: 2 }] {
                 same(&scene, &camera, &tile, 32, name);
+                same_at_once(&scene, &camera, &tile, 32, name);
             }
         }
     }

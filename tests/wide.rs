@@ -216,8 +216,8 @@ fn soups_without_shared_corners_are_packed() {
     let triangles: Vec<[u32; 3]> = (0..1000).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
     let mesh = Mesh::new(&vertices, &triangles[..]).unwrap();
     let list = Scene::new(List::new(&mesh).unwrap(), &mesh).unwrap();
-    for leaf_size in [1, 2, 4, 8] {
-        let wide = WideBvh::new(&mesh, &Options { leaf_size, ..Options::fast() }).unwrap();
+    for options in [Options::fast(), Options::balanced(), Options::best()] {
+        let wide = WideBvh::new(&mesh, &options).unwrap();
         for _ in 0..300 {
             let ray = Ray::between(point_in(&mut random), point_in(&mut random));
             assert_eq!(bits(wide.closest_hit(&ray)), bits(list.closest_hit(&ray)));

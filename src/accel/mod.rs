@@ -60,11 +60,23 @@ pub trait Accelerator {
         Entries::whole(self.bounds(), bundle)
     }
 
+    /// Gives `visit` all leaves that a ray of `bundle` may enter, the nearest first; from then on only what is entered at or
+    /// before the parameter that `visit` returns counts, which must not grow. False if this structure only walks ray by ray.
+    fn sweep(&self, _bundle: &Bundle, _visit: impl FnMut(LeafOf<Self>) -> f32) -> bool
+    where
+        Self: Sized,
+    {
+        false
+    }
+
     /// As [`traverse`](Self::traverse), of what is in one of the entries that this structure gave for the ray.
     fn traverse_from(&self, _entry: &Entry, ray: &PreparedRay) -> Self::Traversal {
         self.traverse(ray)
     }
 }
+
+/// The leaves of a structure.
+pub type LeafOf<A> = <<A as Accelerator>::Traversal as Traversal>::Leaf;
 
 /// A walk along a ray: a state machine that can stop at any leaf, or any node, and go on later.
 pub trait Traversal {

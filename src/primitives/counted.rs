@@ -1,7 +1,7 @@
 use core::cell::Cell;
 
 use super::{Hit, Primitives, Span, Surface};
-use crate::geometry::{Aabb, PreparedRay, Ray};
+use crate::geometry::{Aabb, PreparedRay, Ray, Triangle};
 
 /// Primitives that count how often one is tested against a ray: a decorator, so that nobody else pays.
 ///
@@ -67,5 +67,9 @@ impl<P: Primitives> Primitives for Counted<'_, P> {
 
     fn clip(&self, index: u32, cell: &Aabb) -> Option<Aabb> {
         self.primitives.clip(index, cell)
+    }
+
+    fn outline(&self, index: u32) -> Option<Triangle> {
+        self.primitives.outline(index)
     }
 }

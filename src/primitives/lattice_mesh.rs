@@ -176,6 +176,11 @@ impl Primitives for LatticeMesh<'_> {
     fn clip(&self, index: u32, cell: &Aabb) -> Option<Aabb> {
         self.triangle(index).clip(cell)
     }
+
+    #[inline(always)]
+    fn outline(&self, index: u32) -> Option<Triangle> {
+        Some(self.triangle(index))
+    }
 }
 
 impl Proximity for LatticeMesh<'_> {

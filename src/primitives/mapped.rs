@@ -2,7 +2,7 @@ use super::{Hit, Indices, Primitives, Span, Surface, TexCoords};
 use crate::{
     asset::{Asset, Stored},
     error::Error,
-    geometry::{Aabb, PreparedRay, Ray},
+    geometry::{Aabb, PreparedRay, Ray, Triangle},
 };
 
 /// Triangles onto which a picture is mapped: a decorator that blends the texture coordinates of a triangle's corners.
@@ -83,6 +83,11 @@ impl<P: Primitives> Primitives for Mapped<'_, P> {
 
     fn clip(&self, index: u32, cell: &Aabb) -> Option<Aabb> {
         self.triangles.clip(index, cell)
+    }
+
+    #[inline]
+    fn outline(&self, index: u32) -> Option<Triangle> {
+        self.triangles.outline(index)
     }
 }
 

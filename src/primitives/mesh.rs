@@ -41,12 +41,19 @@ pub enum MeshError {
         /// How many vertices there are.
         vertices: u32,
     },
-    /// A coordinate is not finite or exceeds [`MAX_COORDINATE`](crate::geometry::MAX_COORDINATE).
+    /// A coordinate of a vertex is not finite or exceeds [`MAX_COORDINATE`](crate::geometry::MAX_COORDINATE).
     Vertex {
         /// The triangle that uses it.
         triangle: u32,
-        /// The vertex.
+        /// The vertex's number among all vertices.
         vertex: u32,
+    },
+    /// The same of a corner of a [`Facet`](super::Facet), which has no vertices that could be named.
+    Corner {
+        /// The place in the [`Soup`](super::Soup).
+        place: u32,
+        /// The corner: 0, 1 or 2.
+        corner: u32,
     },
     /// More than 2^32 - 2 triangles.
     TooMany,
@@ -69,6 +76,9 @@ impl fmt::Display for MeshError {
             }
             Self::Vertex { triangle, vertex } => {
                 write!(f, "vertex {vertex} of triangle {triangle} is not finite or beyond 2^126")
+            }
+            Self::Corner { place, corner } => {
+                write!(f, "corner {corner} of the facet at place {place} is not finite or beyond 2^126")
             }
             Self::Frame => write!(f, "the box of the lattice is empty, not finite or beyond 2^126"),
             Self::TooMany => write!(f, "a mesh holds at most 2^32 - 2 triangles"),
@@ -191,6 +201,11 @@ impl Primitives for Mesh<'_> {
     #[inline(always)]
     fn is_certified(&self, _index: u32) -> bool {
         true
+    }
+
+    #[inline(always)]
+    fn outline(&self, index: u32) -> Option<Triangle> {
+        Some(self.triangle(index))
     }
 
     fn clip(&self, index: u32, cell: &Aabb) -> Option<Aabb> {

@@ -42,7 +42,7 @@ pub(crate) use surface::unit;
 pub use tex_coords::TexCoords;
 pub use triangles::Triangles;
 
-use crate::geometry::{Aabb, PreparedRay, Ray};
+use crate::geometry::{Aabb, PreparedRay, Ray, Triangle};
 
 /// A numbered collection of shapes.
 ///
@@ -131,6 +131,11 @@ pub trait Primitives {
         (!part.is_empty()).then_some(part)
     }
 
+    /// A triangle that the certified shape `index` lies in: by it, rays that certainly miss are told many at a time.
+    fn outline(&self, _index: u32) -> Option<Triangle> {
+        None
+    }
+
     /// Whether there are none.
     fn is_empty(&self) -> bool {
         self.len() == 0
@@ -173,6 +178,10 @@ impl<P: Primitives + ?Sized> Primitives for &P {
     #[inline(always)]
     fn clip(&self, index: u32, cell: &Aabb) -> Option<Aabb> {
         (**self).clip(index, cell)
+    }
+    #[inline(always)]
+    fn outline(&self, index: u32) -> Option<Triangle> {
+        (**self).outline(index)
     }
 }
 

@@ -4,7 +4,7 @@ use super::{Hit, Primitives, Probe, Proximity, Span, Surface};
 use crate::{
     asset::{Asset, Stored},
     error::Error,
-    geometry::{Aabb, PreparedRay, Ray},
+    geometry::{Aabb, PreparedRay, Ray, Triangle},
 };
 
 /// Two collections as one: the numbers of the second follow those of the first.
@@ -74,6 +74,13 @@ impl<A: Primitives, B: Primitives> Primitives for (A, B) {
         match index.checked_sub(self.0.len()) {
             None => self.0.clip(index, cell),
             Some(index) => self.1.clip(index, cell),
+        }
+    }
+
+    fn outline(&self, index: u32) -> Option<Triangle> {
+        match index.checked_sub(self.0.len()) {
+            None => self.0.outline(index),
+            Some(index) => self.1.outline(index),
         }
     }
 }

@@ -6,7 +6,7 @@ use super::{Hit, Primitives, Probe, Proximity, Span, Surface};
 use crate::{
     asset::{Asset, AssetError, Kind, Stored},
     error::Error,
-    geometry::{Aabb, PreparedRay, Ray},
+    geometry::{Aabb, PreparedRay, Ray, Triangle},
 };
 
 /// Numbers of primitives, in 16 bits where they fit.
@@ -192,6 +192,11 @@ impl<P: Primitives> Primitives for Reordered<'_, P> {
 
     fn clip(&self, index: u32, cell: &Aabb) -> Option<Aabb> {
         self.primitives.clip(index, cell)
+    }
+
+    #[inline]
+    fn outline(&self, index: u32) -> Option<Triangle> {
+        self.primitives.outline(index)
     }
 }
 

@@ -4,7 +4,7 @@ use super::{Hit, Mesh, Normals, Primitives, Span, Surface, unit};
 use crate::{
     asset::{Asset, Stored},
     error::Error,
-    geometry::{Aabb, PreparedRay, Ray},
+    geometry::{Aabb, PreparedRay, Ray, Triangle},
 };
 
 /// The least cosine between a mirrored ray and the surface it leaves.
@@ -119,6 +119,11 @@ impl Primitives for Smooth<'_> {
 
     fn clip(&self, index: u32, cell: &Aabb) -> Option<Aabb> {
         self.mesh.clip(index, cell)
+    }
+
+    #[inline]
+    fn outline(&self, index: u32) -> Option<Triangle> {
+        self.mesh.outline(index)
     }
 }
 

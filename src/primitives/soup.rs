@@ -57,22 +57,22 @@ impl<'a> Soup<'a> {
     ///
     /// # Errors
     ///
-    /// [`MeshError::Vertex`] names the place and the corner that is not finite or beyond the range of coordinates,
+    /// [`MeshError::Corner`] names the place and the corner that is not finite or beyond the range of coordinates,
     /// [`OrderError`] the place whose number is none, or where another triangle stands than the number says.
     pub fn new(facets: &'a [Facet], places: &'a [u32]) -> Result<Self, Error> {
         let count = u32::try_from(facets.len()).ok().filter(|&n| n < u32::MAX).ok_or(MeshError::TooMany)?;
-        let facet = |place: u32| facets.get(place as usize);
-        for (triangle, facet) in (0..count).zip(facets) {
+        for (place, facet) in (0..count).zip(facets) {
             let is_out = |corner: &[f32; 3]| !in_range(Vec3::from_array(*corner));
-            if let Some(vertex) = facet.corners.iter().position(is_out) {
-                return Err(MeshError::Vertex { triangle, vertex: vertex as u32 }.into());
+            if let Some(corner) = facet.corners.iter().position(is_out) {
+                return Err(MeshError::Corner { place, corner: corner as u32 }.into());
             }
             if facet.number as usize >= places.len() {
-                return Err(OrderError { place: triangle }.into());
+                return Err(OrderError { place }.into());
             }
         }
         for (number, &place) in (0..).zip(places) {
-            if facet(place).map(|facet| facet.number) != Some(number) {
+            let there = facets.get(place as usize).map(|facet| facet.number);
+            if there != Some(number) {
                 return Err(OrderError { place }.into());
             }
         }
@@ -140,6 +140,11 @@ impl Primitives for Soup<'_> {
 
     fn clip(&self, index: u32, cell: &Aabb) -> Option<Aabb> {
         self.at(index).clip(cell)
+    }
+
+    #[inline]
+    fn outline(&self, index: u32) -> Option<Triangle> {
+        Some(self.at(index))
     }
 }
 

@@ -2,11 +2,13 @@
 
 mod collector;
 mod hits;
+mod item_buffer;
 mod nearby;
 mod overlaps;
 mod paused;
 
 pub(crate) use collector::{Any, Closest, Collector, Inner, Nearest, Next, Where, end_of, start_of};
 pub use hits::Hits;
+pub use item_buffer::ItemBuffer;
 pub use overlaps::Overlaps;
 pub use paused::{PausedQuery, Progress};

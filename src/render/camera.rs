@@ -2,7 +2,7 @@ use glam::Vec3;
 
 use super::Tile;
 use crate::{
-    geometry::{Aabb, Bundle, Ray},
+    geometry::{Aabb, Bundle, Pencil, Ray, Screen},
     math,
     primitives::unit,
 };
@@ -79,14 +79,28 @@ impl Camera {
     #[inline]
     #[must_use]
     pub fn ray(&self, x: f32, y: f32, width: u32, height: u32) -> Ray {
-        let half = height as f32 * 0.5;
-        let (u, v) = ((x - width as f32 * 0.5) / half, 1.0 - y / half);
-        let across = self.right * u + self.up * v;
+        let across = self.screen(width, height).across(x, y);
         if self.parallel {
             Ray::new(self.eye + across, self.forward)
         } else {
             Ray::new(self.eye, self.forward + across)
         }
+    }
+
+    /// A picture of this size.
+    #[inline]
+    fn screen(&self, width: u32, height: u32) -> Screen {
+        let half = [width, height].map(|side| side as f32 * 0.5);
+        Screen { forward: self.forward, up: self.up, right: self.right, half }
+    }
+
+    /// The rays through the middles of a tile's pixels; `None` if they do not begin at one point, or are more than 8 x 8.
+    #[must_use]
+    pub fn pencil(&self, tile: &Tile, width: u32, height: u32) -> Option<Pencil> {
+        if self.parallel {
+            return None;
+        }
+        Pencil::new(self.eye, self.screen(width, height), [tile.x, tile.y], [tile.width, tile.height])
     }
 
     /// All rays through the points of a tile of a picture; `None` if they are to be looked at one by one.

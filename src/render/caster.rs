@@ -1,9 +1,10 @@
 use super::Material;
 use crate::{
     accel::{Accelerator, Entries, LatticeAccelerator},
-    geometry::{Aabb, Bundle, Ray},
+    geometry::{Aabb, Bundle, Pencil, Ray},
     lattice_scene::LatticeScene,
     primitives::{Hit, LatticeMesh, LatticeTriangles, Primitives, Surface},
+    query::ItemBuffer,
     scene::Scene,
 };
 
@@ -23,6 +24,13 @@ pub trait Caster {
     /// The first hit of a camera's ray, of the bundle for which these entries were found.
     fn closest_hit_from(&self, _entries: &Entries, ray: &Ray) -> Option<Hit> {
         self.closest_hit(ray, 0)
+    }
+
+    /// The first hits of all the camera's rays in a tile.
+    fn closest_hits(&self, pencil: &Pencil, hits: &mut ItemBuffer) {
+        let bundle = pencil.bundle();
+        let entries = bundle.map_or_else(|| Entries::everything(self.bounds()), |bundle| self.enter(&bundle));
+        hits.fill(pencil, |ray| self.closest_hit_from(&entries, ray));
     }
 
     /// Whether anything lies on the ray, a shadow ray.
@@ -57,6 +65,10 @@ impl<A: Accelerator, P: Primitives> Caster for Scene<A, P> {
 
     fn closest_hit_from(&self, entries: &Entries, ray: &Ray) -> Option<Hit> {
         Self::closest_hit_from(self, entries, ray)
+    }
+
+    fn closest_hits(&self, pencil: &Pencil, hits: &mut ItemBuffer) {
+        Self::closest_hits(self, pencil, hits);
     }
 
     fn any_hit(&self, ray: &Ray, _depth: u32) -> bool {

@@ -3,7 +3,7 @@ use core::cell::Cell;
 use glam::Vec3;
 
 use super::{Caster, Renderer, Tile};
-use crate::{accel::Entries, geometry::Ray};
+use crate::{accel::Entries, geometry::Ray, primitives::Hit, query::ItemBuffer};
 
 /// A tile of a picture, with where in the scene its rays may begin.
 ///
@@ -26,6 +26,8 @@ pub struct Patch<'a, S: ?Sized> {
     renderer: Renderer<'a, S>,
     /// None if each ray begins with everything.
     pub(super) entries: Option<Entries>,
+    /// What the rays of its pixels hit first, if that is known: from this corner on.
+    hits: Option<(&'a ItemBuffer, [u32; 2])>,
     /// What last kept the light of each of the first lights from a point.
     occluders: [Cell<Option<u32>>; LIGHTS],
 }
@@ -36,7 +38,17 @@ const LIGHTS: usize = 4;
 impl<'a, S: Caster + ?Sized> Patch<'a, S> {
     pub(super) fn new(renderer: Renderer<'a, S>, tile: &Tile) -> Self {
         let entries = renderer.bundle(tile).map(|bundle| renderer.scene.enter(&bundle));
-        Self { renderer, entries, occluders: Default::default() }
+        Self { renderer, entries, hits: None, occluders: Default::default() }
+    }
+
+    /// The tile whose rays hit this.
+    pub(super) fn of_hits(renderer: Renderer<'a, S>, tile: &Tile, hits: &'a ItemBuffer) -> Self {
+        Self { renderer, entries: None, hits: Some((hits, [tile.x, tile.y])), occluders: Default::default() }
+    }
+
+    /// What the ray of a pixel hits first, if that is known.
+    pub(super) fn first_hit(&self, x: u32, y: u32) -> Option<Option<Hit>> {
+        self.hits.map(|(hits, corner)| hits.get(x.wrapping_sub(corner[0]), y.wrapping_sub(corner[1])))
     }
 
     /// The linear colour of a pixel of the tile, as [`Renderer::pixel`].

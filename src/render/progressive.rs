@@ -1,10 +1,10 @@
 use glam::Vec3;
 
-use super::{Caster, Order, Patch, Renderer, Tile};
+use super::{Caster, Interlaced, Patch, Renderer, Tile};
 
 /// A picture that is rough at first: of blocks of 8 x 8 pixels, of which each pass computes as many as all before it.
 ///
-/// An iterator of blocks and their linear colours in the [`Order`] of Bayer's matrix, each to be drawn over what is there. It
+/// An iterator of blocks and their linear colours [interlaced](Interlaced) by Bayer's matrix, each to be drawn over what is there. It
 /// can be left and gone on with at any time, and computes each pixel once: the first 64th of the work shows the whole
 /// picture, the second half completes it.
 ///
@@ -26,14 +26,14 @@ use super::{Caster, Order, Patch, Renderer, Tile};
 #[derive(Debug)]
 pub struct Progressive<'a, S: ?Sized> {
     renderer: Renderer<'a, S>,
-    order: Order,
+    pixels: Interlaced,
     /// The tile at hand, with where its rays may begin.
     patch: Option<(Tile, Patch<'a, S>)>,
 }
 
 impl<'a, S: Caster + ?Sized> Progressive<'a, S> {
     pub(super) fn new(renderer: Renderer<'a, S>) -> Self {
-        Self { renderer, order: Order::new(renderer.width(), renderer.height()), patch: None }
+        Self { renderer, pixels: Interlaced::new(renderer.width(), renderer.height()), patch: None }
     }
 
     /// Computes at most so many pixels and lets `draw` have their blocks; false at the end of the picture.
@@ -52,8 +52,8 @@ impl<S: Caster + ?Sized> Iterator for Progressive<'_, S> {
     type Item = (Tile, Vec3);
 
     fn next(&mut self) -> Option<(Tile, Vec3)> {
-        let block = self.order.next()?;
-        let tile = self.order.tile();
+        let block = self.pixels.next()?;
+        let tile = self.pixels.tile();
         if self.patch.as_ref().is_none_or(|(at_hand, _)| *at_hand != tile) {
             self.patch = Some((tile, self.renderer.patch(tile)));
         }

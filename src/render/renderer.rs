@@ -4,8 +4,9 @@ use glam::Vec3;
 
 use super::{Camera, Caster, Color, Light, Materials, Patch, Progressive, Terms, Tile, Tiles, shade::mirror};
 use crate::{
-    geometry::{Aabb, Bundle, Ray},
-    primitives::unit,
+    geometry::{Aabb, Bundle, Pencil, Ray},
+    primitives::{Hit, unit},
+    query::ItemBuffer,
 };
 
 /// The slice for a tile's pixels has no room for all of them; it is untouched.
@@ -27,7 +28,7 @@ impl fmt::Display for TooShort {
 impl core::error::Error for TooShort {}
 
 /// Pixels that a patch is wide and high.
-pub(super) const PATCH: u32 = 8;
+pub(super) const PATCH: u32 = Pencil::SIDE;
 
 /// A picture of a scene, computed where it is looked at.
 ///
@@ -176,8 +177,15 @@ impl<'a, S: Caster + ?Sized> Renderer<'a, S> {
         if needed > available {
             return Err(TooShort { needed, available });
         }
+        let mut hits = ItemBuffer::new();
         for part in tile.parts(PATCH, PATCH) {
-            let patch = self.patch(part);
+            let patch = match self.pencil(&part) {
+                Some(pencil) => {
+                    self.scene.closest_hits(&pencil, &mut hits);
+                    Patch::of_hits(*self, &part, &hits)
+                }
+                None => self.patch(part),
+            };
             for (x, y) in part.pixels() {
                 let index = (y - tile.y) as usize * tile.width as usize + (x - tile.x) as usize;
                 if let Some(pixel) = pixels.get_mut(index) {
@@ -218,6 +226,11 @@ impl<'a, S: Caster + ?Sized> Renderer<'a, S> {
         self.bundle(tile).is_none_or(|bundle| bundle.entry(bounds).is_some())
     }
 
+    /// The rays of a tile of at most 8 x 8 pixels; none if there is more than one a pixel.
+    fn pencil(&self, tile: &Tile) -> Option<Pencil> {
+        if self.samples == 1 { self.camera.pencil(tile, self.width, self.height) } else { None }
+    }
+
     /// All rays of a tile.
     pub(super) fn bundle(&self, tile: &Tile) -> Option<Bundle> {
         self.camera.bundle(tile, self.width, self.height)
@@ -237,21 +250,24 @@ impl<'a, S: Caster + ?Sized> Renderer<'a, S> {
             for i in 0..self.samples {
                 let (dx, dy) = ((i as f32 + 0.5) * step, (j as f32 + 0.5) * step);
                 let ray = self.camera.ray(x as f32 + dx, y as f32 + dy, self.width, self.height);
-                sum += self.light_along(patch, ray);
+                sum += self.light_along(patch, ray, patch.and_then(|patch| patch.first_hit(x, y)));
             }
         }
         sum * (step * step)
     }
 
     /// The light that arrives against `ray`: Whitted, *An improved illumination model for shaded display*, 1980, as a loop.
-    fn light_along(&self, patch: Option<&Patch<'_, S>>, mut ray: Ray) -> Vec3 {
+    ///
+    /// What it hits first may be known.
+    fn light_along(&self, patch: Option<&Patch<'_, S>>, mut ray: Ray, mut first: Option<Option<Hit>>) -> Vec3 {
         let (mut light, mut share) = (Vec3::ZERO, 1.0);
         let mut entries = patch.and_then(|patch| patch.entries.as_ref());
         for depth in 0..=self.bounces {
             // Only the camera's own ray begins where those of the tile do.
-            let hit = match entries.take() {
-                Some(entries) => self.scene.closest_hit_from(entries, &ray),
-                None => self.scene.closest_hit(&ray, depth),
+            let hit = match (first.take(), entries.take()) {
+                (Some(hit), _) => hit,
+                (None, Some(entries)) => self.scene.closest_hit_from(entries, &ray),
+                (None, None) => self.scene.closest_hit(&ray, depth),
             };
             let Some(hit) = hit else {
                 return light + self.sky(ray.direction) * share;

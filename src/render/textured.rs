@@ -1,8 +1,9 @@
 use super::{Caster, Material, Materials, Textures};
 use crate::{
     accel::Entries,
-    geometry::{Aabb, Bundle, Ray},
+    geometry::{Aabb, Bundle, Pencil, Ray},
     primitives::{Hit, Surface},
+    query::ItemBuffer,
 };
 
 /// A scene whose materials have textures: a decorator, so that pictures without them do not pay.
@@ -62,6 +63,10 @@ impl<S: Caster + ?Sized> Caster for Textured<'_, S> {
 
     fn enter(&self, bundle: &Bundle) -> Entries {
         self.scene.enter(bundle)
+    }
+
+    fn closest_hits(&self, pencil: &Pencil, hits: &mut ItemBuffer) {
+        self.scene.closest_hits(pencil, hits);
     }
 
     fn closest_hit_from(&self, entries: &Entries, ray: &Ray) -> Option<Hit> {

@@ -6,8 +6,9 @@
 //! numbers. How many corners there are says whoever names the block, so that all rows can be read at once.
 
 use fearless_simd::{Bytes, Simd, SimdBase, f32x8, u32x8};
+use glam::Vec3;
 
-use super::{corners::Corners, node::WIDTH, permute::permute, slabs::row};
+use super::{node::WIDTH, permute::permute, slabs::row};
 use crate::geometry::{Possible, ShearLanes, Triangle, Wedge};
 
 /// Words before the corners.
@@ -102,20 +103,25 @@ impl<'t> Block<'t> {
     }
 }
 
+/// What a lane of a block is: a triangle and which of the block's corners it has.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Lane {
+    pub(super) number: u32,
+    pub(super) corners: [u8; 3],
+}
+
 /// Writes a block, for which `to` has just the room.
-pub(super) fn write(to: &mut [u32], numbers: &[u32], triangles: &[Triangle]) {
-    let (mut corners, mut head) = (Corners::NONE, [0; HEAD]);
-    for (lane, &Triangle { a, b, c }) in triangles.iter().enumerate() {
-        for (places, corner) in head.iter_mut().zip([a, b, c]) {
-            let corner = [corner.x.to_bits(), corner.y.to_bits(), corner.z.to_bits()];
-            *places |= (corners.add(corner).unwrap_or(0) as u32) << (3 * lane);
+pub(super) fn write(to: &mut [u32], corners: &[Vec3], lanes: &[Lane]) {
+    let mut head = [0; HEAD];
+    for (lane, of) in lanes.iter().enumerate() {
+        for (places, corner) in head.iter_mut().zip(of.corners) {
+            *places |= u32::from(corner) << (3 * lane);
         }
     }
-    head[0] |= (0xff >> (WIDTH - numbers.len())) << ABOVE;
-    let mut rest = to;
-    for row in [&head[..]].into_iter().chain(corners.rows()).chain([numbers]) {
-        if let Some(places) = rest.split_off_mut(..row.len()) {
-            places.copy_from_slice(row);
-        }
+    head[0] |= (0xff >> (WIDTH - lanes.len())) << ABOVE;
+    let rows = (0..3).flat_map(|axis| corners.iter().map(move |corner| corner[axis].to_bits()));
+    let words = head.into_iter().chain(rows).chain(lanes.iter().map(|lane| lane.number));
+    for (place, word) in to.iter_mut().zip(words) {
+        *place = word;
     }
 }

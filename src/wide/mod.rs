@@ -14,7 +14,6 @@ mod block;
 mod build;
 mod coherence;
 mod collapse;
-mod corners;
 mod hull;
 mod node;
 mod packet;
@@ -32,7 +31,7 @@ use std::{convert::Infallible, ops::ControlFlow};
 
 use fearless_simd::{Level, dispatch};
 
-use self::{build::Monitor, corners::Corners, node::Child, tree::Tree};
+use self::{build::Monitor, node::Child, tree::Tree};
 pub use self::{
     build::{Options, Progress},
     coherence::Coherence,
@@ -120,8 +119,7 @@ impl<P: Triangles + Sync> WideBvh<P> {
         let monitor = Monitor::new(&tell);
         // Packing comes last.
         monitor.expect(count);
-        let fits = |numbers: &[u32]| Corners::of(numbers.iter().map(|&number| triangles.triangle(number))).is_some();
-        let tree = match build::build(&triangles, options, &fits, &monitor)? {
+        let tree = match build::build(&triangles, options, &monitor)? {
             ControlFlow::Continue(binary) => {
                 collapse::collapse(&binary, options.byte_price, count, |number| triangles.triangle(number), &monitor)
             }

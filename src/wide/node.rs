@@ -41,22 +41,22 @@ impl Node {
     pub(super) fn order(&mut self) {
         for octant in 0..WIDTH {
             // How far along the diagonal of the octant the corner is that is met first; none of an empty place.
-            let key = |place: usize| -> f32 {
-                let near = |axis: usize| {
-                    let descends = octant >> axis & 1;
-                    let p = f32::from_bits(self.rows[2 * axis + descends][place]);
-                    if descends == 0 { p } else { -p }
-                };
-                near(0) + near(1) + near(2)
-            };
-            let keys: [f32; WIDTH] = core::array::from_fn(key);
-            let mut order = 0;
-            for (place, key) in keys.iter().enumerate() {
-                // Of those that are met at once the later ones come first.
-                let is_before = |other: usize| keys[other] > *key || (keys[other] == *key && other < place);
-                let rank: usize = (0..WIDTH).map(|other| usize::from(is_before(other))).sum();
-                order |= (place as u32) << (4 * rank);
+            let mut keys = [0.0; WIDTH];
+            for axis in 0..3 {
+                let descends = octant >> axis & 1;
+                let sign = if descends == 0 { 1.0 } else { -1.0 };
+                for (key, &word) in keys.iter_mut().zip(&self.rows[2 * axis + descends]) {
+                    *key += f32::from_bits(word) * sign;
+                }
             }
+            let mut ranks = [0; WIDTH];
+            for (other, key) in keys.iter().enumerate() {
+                for (place, rank) in ranks.iter_mut().enumerate() {
+                    // Of those that are met at once the later ones come first.
+                    *rank += u32::from(*key > keys[place]) + u32::from(*key == keys[place] && other < place);
+                }
+            }
+            let order = (0..WIDTH as u32).zip(ranks).fold(0, |order, (place, rank)| order | place << (4 * rank));
             self.rows[ORDERS][octant] = order;
         }
     }

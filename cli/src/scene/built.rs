@@ -67,7 +67,7 @@ impl Built {
     ) -> Result<Self, Failure> {
         let name = named.title(preset);
         let Some(plan) = named.plan(preset, most) else {
-            let what = format!("--structure {}: only renders, casts and compares meshes", named.name);
+            let what = format!("--structure {}: only renders, casts at and compares meshes", named.name);
             return Err(Failure::new(what, "choose another structure"));
         };
         let progress = Progress::spinner(&format!("building the {name} …"));

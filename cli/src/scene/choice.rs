@@ -132,15 +132,16 @@ pub enum Choice {
 }
 
 impl Choice {
-    /// The names that can be given.
-    fn names() -> String {
-        let names: Vec<&str> = Named::ALL.iter().map(|named| named.name).collect();
+    /// The names that can be given, of all or of those alone that are built in words.
+    fn names(all: bool) -> String {
+        let named = Named::ALL.iter().filter(|named| all || !named.is_wide());
+        let names: Vec<&str> = named.map(|named| named.name).collect();
         format!("auto, {}", names.join(", "))
     }
 
     /// What the help says of an option for a structure over `what`.
     pub fn help(what: &str) -> String {
-        format!("Structure over the {what}: {}", Self::names())
+        format!("Structure over the {what}: {}", Self::names(false))
     }
 }
 
@@ -151,7 +152,7 @@ impl FromStr for Choice {
         match Named::find(text) {
             Some(named) => Ok(Self::Named(named)),
             None if text == "auto" => Ok(Self::Auto),
-            None => Err(format!("unknown structure, choose one of {}", Self::names())),
+            None => Err(format!("unknown structure, choose one of {}", Self::names(true))),
         }
     }
 }
@@ -159,7 +160,8 @@ impl FromStr for Choice {
 /// The options that choose a structure.
 #[derive(Clone, Copy, Debug, Default, clap::Args)]
 pub struct StructureArgs {
-    #[arg(short, long, value_name = "NAME", help = Choice::help("primitives") + " [default: the asset's own, or auto]")]
+    #[arg(short, long, value_name = "NAME", help = Choice::help("primitives")
+          + "; or wide, which renders, casts at and compares meshes, the fastest of all [default: the asset's own, or auto]")]
     pub structure: Option<Choice>,
     /// What the structure is tuned for
     #[arg(short, long, value_name = "PRESET", default_value = "balanced")]

@@ -75,6 +75,7 @@ fn walk<A: Accelerator>(structure: &A) {
         black_box(leaf.last());
     }
     if let Some(bundle) = Bundle::around([*ray.ray(), *ray.ray()]) {
+        black_box(structure.sweep(&bundle, |leaf| black_box(leaf.count() as f32)));
         let entries = structure.enter(&bundle);
         for entry in entries.iter() {
             black_box(structure.traverse_from(entry, &ray).next_leaf(&ray, float()).is_some());

@@ -42,6 +42,7 @@ impl Proximity for Own {
 /// Asks primitives of any kind for everything.
 pub fn asked<P: Proximity>(primitives: &P) {
     black_box((primitives.len(), primitives.numbers(), primitives.is_empty(), primitives.frame()));
+    black_box(primitives.outline(word()));
     black_box((primitives.bounds(word()), primitives.mask(word()), primitives.is_certified(word())));
     black_box((primitives.clip(word(), &aabb()), primitives.closest_point(word(), vector())));
 }

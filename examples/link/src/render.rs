@@ -13,7 +13,7 @@ use hitscan::{
     display::{self, Packed, Strip},
     primitives::Spheres,
     render::{
-        Camera, Caster, Channels, Diffusion, Dither, Filter, Light, Material, Materials, Nearest, Numbers, Order,
+        Camera, Caster, Channels, Diffusion, Dither, Filter, Interlaced, Light, Material, Materials, Nearest, Numbers,
         Ordered, Renderer, Terms, Texels, Texture, Textured, Textures, Tile, Wrap,
     },
 };
@@ -55,8 +55,8 @@ pub fn all() {
     let mut rough = renderer.progressive();
     black_box(rough.step(word(), |tile, color| _ = black_box((tile, color))));
     black_box(rough.next());
-    let mut order = Order::new(word(), word());
-    black_box((order.next(), order.tile(), order.pass(), renderer.samples()));
+    let mut pixels = Interlaced::new(word(), word());
+    black_box((pixels.next(), pixels.tile(), pixels.pass(), renderer.samples()));
     let tile = Tile { x: word(), y: word(), width: word(), height: word() };
     let camera = camera();
     black_box((camera.eye(), camera.forward(), camera.up(), camera.bundle(&tile, word(), word())));

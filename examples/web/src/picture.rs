@@ -1,4 +1,4 @@
-use hitscan::render::{Color, Order, Patch, Renderer, Tile, Tiles};
+use hitscan::render::{Color, Interlaced, Patch, Renderer, Tile, Tiles};
 
 use crate::{View, World, heat, world::Tally};
 
@@ -12,7 +12,7 @@ pub struct Picture<'w> {
     view: View,
     renderer: Renderer<'w, Tally>,
     /// Each pixel once.
-    order: Order,
+    order: Interlaced,
     /// Tiles of which each pixel is drawn once more.
     again: Tiles,
     /// Where the last step drew, and where the rays of that tile begin.
@@ -32,7 +32,7 @@ impl<'w> Picture<'w> {
             world,
             view,
             renderer: world.renderer(&view, 1),
-            order: Order::new(view.width, view.height),
+            order: Interlaced::new(view.width, view.height),
             again: Tiles::new(width, height, TILE, TILE),
             tile: Tile { x: 0, y: 0, width: 0, height: 0 },
             patch: None,
@@ -46,11 +46,12 @@ impl<'w> Picture<'w> {
         while drawn < blocks {
             // Looked at before it is gone on to: it may be of the next tile.
             let mut ahead = self.order.clone();
-            let Some(block) = ahead.next() else { break };
-            if drawn > 0 && ahead.tile() != self.tile {
+            let next = ahead.next();
+            if drawn > 0 && (next.is_none() || ahead.tile() != self.tile) {
                 return drawn;
             }
             self.order = ahead;
+            let Some(block) = next else { break };
             self.enter(self.order.tile());
             self.draw(block);
             drawn += 1;
@@ -163,6 +164,7 @@ mod tests {
             for blocks in [1, 50, u32::MAX] {
                 let mut picture = Picture::new(&world, view);
                 while picture.step(blocks) > 0 {}
+                assert_eq!(picture.fineness(), 0, "{view:?} in steps of {blocks}");
                 assert!(picture.pixels() == whole, "{view:?} in steps of {blocks}");
             }
         }

@@ -31,39 +31,41 @@ impl Planes {
         }
     }
 
-    /// When rays that are in a cell from `enter` to `exit` are in its left and its right part.
+    /// When rays that are in a cell from `enter` to `exit` are in its left and its right part, and whether they come to the
+    /// right one first.
     #[inline(always)]
-    fn part(&self, bundle: &Bundle, enter: f32, exit: f32) -> [(f32, f32); 2] {
+    fn part(&self, bundle: &Bundle, enter: f32, exit: f32) -> ([(f32, f32); 2], bool) {
         let begin = bundle.passage(self.axis, self.begin, enter);
         let end = bundle.passage(self.axis, self.end, enter);
-        match (begin.descends, end.descends) {
+        let parts = match (begin.descends, end.descends) {
             (false, false) => [(enter, least(end.latest, exit)), (greatest(begin.earliest, enter), exit)],
             (true, true) => [(greatest(end.earliest, enter), exit), (enter, least(begin.latest, exit))],
             // They begin between the faces.
             _ => [(enter, exit); 2],
-        }
+        };
+        (parts, begin.descends)
     }
 }
 
 /// A node, and when rays of a bundle can be in its cell.
 #[derive(Clone, Copy, Debug)]
-struct Beam {
-    node: u32,
-    enter: f32,
-    exit: f32,
+pub(super) struct Beam {
+    pub(super) node: u32,
+    pub(super) enter: f32,
+    pub(super) exit: f32,
 }
 
 /// What a bundle finds at a node.
 #[derive(Clone, Copy, Debug)]
-enum Found {
+pub(super) enum Found {
     /// Primitives.
     Primitives,
     /// Nothing, or nothing that its rays meet.
     Nothing,
     /// What counts is on one side.
     Half(Beam, Planes, Side),
-    /// It may be on both.
-    Halves([Beam; 2], Planes),
+    /// It may be on both, and the rays are on the right one first.
+    Halves { halves: [Beam; 2], planes: Planes, descends: bool },
 }
 
 /// Nodes that are visited to tell whether a cell is empty; it counts as one that is not if they, or what may wait, do not
@@ -81,7 +83,7 @@ pub(super) fn entries(mut bounds: Aabb, bundle: &Bundle, open: impl Fn(u32) -> O
             Found::Nothing => return Entries::default(),
             Found::Primitives => break,
             Found::Half(next, planes, side) => (next, planes, side),
-            Found::Halves([left, right], planes) => {
+            Found::Halves { halves: [left, right], planes, .. } => {
                 match (is_empty(bundle, left, &open), is_empty(bundle, right, &open)) {
                     (true, true) => return Entries::default(),
                     (true, false) => (right, planes, Side::Right),
@@ -109,7 +111,7 @@ fn is_empty(bundle: &Bundle, at: Beam, open: impl Fn(u32) -> Option<Opened>) -> 
             Found::Primitives => return false,
             Found::Nothing => waiting.pop(),
             Found::Half(half, ..) => Some(half),
-            Found::Halves([left, right], _) => {
+            Found::Halves { halves: [left, right], .. } => {
                 if waiting.push(right).is_err() {
                     return false;
                 }
@@ -122,13 +124,13 @@ fn is_empty(bundle: &Bundle, at: Beam, open: impl Fn(u32) -> Option<Opened>) -> 
 
 /// One step of all rays at once: the intervals of a walk, with the earliest entry and the latest exit of any ray.
 #[inline(always)]
-fn look(bundle: &Bundle, Beam { node, enter, exit }: Beam, open: impl Fn(u32) -> Option<Opened>) -> Found {
+pub(super) fn look(bundle: &Bundle, Beam { node, enter, exit }: Beam, open: impl Fn(u32) -> Option<Opened>) -> Found {
     let (planes, left, right, empty) = match open(node) {
         Some(Opened::Parted { planes, left, right, empty }) => (planes, left, right, empty),
         Some(Opened::Leaf { is_empty: false }) => return Found::Primitives,
         _ => return Found::Nothing,
     };
-    let [below, above] = planes.part(bundle, enter, exit);
+    let ([below, above], descends) = planes.part(bundle, enter, exit);
     // Written so that NaN visits.
     let without_left = empty == Some(Side::Left) || below.0 > below.1;
     let without_right = empty == Some(Side::Right) || above.0 > above.1;
@@ -138,6 +140,6 @@ fn look(bundle: &Bundle, Beam { node, enter, exit }: Beam, open: impl Fn(u32) ->
         (true, true) => Found::Nothing,
         (true, false) => Found::Half(right, planes, Side::Right),
         (false, true) => Found::Half(left, planes, Side::Left),
-        (false, false) => Found::Halves([left, right], planes),
+        (false, false) => Found::Halves { halves: [left, right], planes, descends },
     }
 }

@@ -15,6 +15,7 @@ mod order;
 mod pack;
 mod split;
 mod stage;
+mod sweep;
 mod traverse;
 
 pub use compact::{CompactKdTraversal, CompactKdTree};
@@ -25,6 +26,7 @@ use self::{
     enter::{Opened, Planes},
     form::Form,
     node::{Kind, Node, Side},
+    sweep::sweep,
 };
 use super::{Accelerator, Cell, Entries, Entry, Hierarchy, Inside, Leaf, leaf::References};
 use crate::{
@@ -131,6 +133,18 @@ impl<'a> KdTree<'a> {
 }
 
 impl<'a, const HEIGHT: usize> KdTree<'a, HEIGHT> {
+    /// What a node says to all rays of a bundle.
+    #[inline(always)]
+    fn opened(&self, node: u32) -> Option<Opened> {
+        Some(match self.nodes.get(node as usize)?.kind() {
+            Kind::Inner { axis, position, right, empty } => {
+                let planes = Planes { axis, begin: position, end: position };
+                Opened::Parted { planes, left: node + 1, right, empty }
+            }
+            Kind::Leaf { count, .. } => Opened::Leaf { is_empty: count == 0 },
+        })
+    }
+
     /// The tree as words: what a file, flash, a GPU or a message holds.
     #[must_use]
     pub const fn as_words(&self) -> &'a [u32] {
@@ -208,15 +222,17 @@ impl<'a, const HEIGHT: usize> Accelerator for KdTree<'a, HEIGHT> {
 
     /// One entry: a second one costs each ray more than it spares.
     fn enter(&self, bundle: &Bundle) -> Entries {
-        enter::entries(self.bounds, bundle, |node| {
-            Some(match self.nodes.get(node as usize)?.kind() {
-                Kind::Inner { axis, position, right, empty } => {
-                    let planes = Planes { axis, begin: position, end: position };
-                    Opened::Parted { planes, left: node + 1, right, empty }
-                }
-                Kind::Leaf { count, .. } => Opened::Leaf { is_empty: count == 0 },
-            })
-        })
+        enter::entries(self.bounds, bundle, |node| self.opened(node))
+    }
+
+    fn sweep(&self, bundle: &Bundle, mut visit: impl FnMut(Leaf<'a>) -> f32) -> bool {
+        let visit = |node: u32| match self.nodes.get(node as usize).map(|node| node.kind()) {
+            Some(Kind::Leaf { first, count: 1 }) => visit(Leaf::of(References::IDENTITY, first, 1)),
+            Some(Kind::Leaf { first, count }) => visit(Leaf::of(self.references, first, count)),
+            _ => f32::NEG_INFINITY,
+        };
+        sweep::<HEIGHT>(&self.bounds, bundle, |node| self.opened(node), visit);
+        true
     }
 
     #[inline]

@@ -2,7 +2,7 @@
 
 use glam::Vec4;
 
-use super::item::Item;
+use super::{LEAF, item::Item};
 use crate::wide::hull::Hull;
 
 /// The most bins per axis.
@@ -35,16 +35,16 @@ impl Grid {
     }
 }
 
-/// What has its middle in each of at most `N` bins.
+/// What has its middle in each of at most `N` bins, by axis.
 #[derive(Clone)]
 pub(super) struct Bins<const N: usize> {
-    hulls: [[Hull; N]; 3],
-    counts: [[u32; N]; 3],
+    hulls: [[Hull; 3]; N],
+    counts: [[u32; 4]; N],
 }
 
 impl<const N: usize> Bins<N> {
     /// Of nothing.
-    pub(super) const EMPTY: Self = Self { hulls: [[Hull::EMPTY; N]; 3], counts: [[0; N]; 3] };
+    pub(super) const EMPTY: Self = Self { hulls: [[Hull::EMPTY; 3]; N], counts: [[0; 4]; N] };
 
     /// Of `items`, in the bins of `grid`.
     #[inline]
@@ -52,10 +52,11 @@ impl<const N: usize> Bins<N> {
         let mut bins = Self::EMPTY;
         for item in items {
             let places: [u32; 4] = bytemuck::must_cast(grid.rounded(item));
-            for ((hulls, counts), place) in bins.hulls.iter_mut().zip(&mut bins.counts).zip(places) {
+            for (axis, place) in places.into_iter().enumerate().take(3) {
                 let place = place as usize % N;
-                hulls[place] = hulls[place].union(item.hull());
-                counts[place] += 1;
+                let hull = &mut bins.hulls[place][axis];
+                *hull = hull.union(item.hull());
+                bins.counts[place][axis] += 1;
             }
         }
         bins
@@ -63,59 +64,67 @@ impl<const N: usize> Bins<N> {
 
     /// Of both sets, in the same bins.
     pub(super) fn merge(mut self, other: &Self) -> Self {
-        for axis in 0..3 {
-            for (hull, other) in self.hulls[axis].iter_mut().zip(&other.hulls[axis]) {
-                *hull = hull.union(*other);
-            }
-            for (count, other) in self.counts[axis].iter_mut().zip(&other.counts[axis]) {
-                *count += other;
-            }
+        for bin in 0..N {
+            unite(&mut self.hulls[bin], &other.hulls[bin]);
+            add(&mut self.counts[bin], &other.counts[bin]);
         }
         self
     }
 
     /// How many items are before a border.
     pub(super) fn before(&self, cut: &Cut) -> u32 {
-        self.counts[cut.axis].iter().take((cut.border - ROUND) as usize).sum()
+        self.counts.iter().take(cut.bins()).map(|counts| counts[cut.axis]).sum()
     }
 
     /// The boxes before and behind a border.
     pub(super) fn parts(&self, cut: &Cut) -> [Hull; 2] {
-        let (before, behind) = self.hulls[cut.axis].split_at((cut.border - ROUND) as usize);
-        [before, behind].map(|hulls| hulls.iter().fold(Hull::EMPTY, |all, hull| all.union(*hull)))
+        let (before, behind) = self.hulls.split_at(cut.bins());
+        [before, behind].map(|hulls| hulls.iter().fold(Hull::EMPTY, |all, hulls| all.union(hulls[cut.axis])))
     }
 
-    /// The border at which dividing costs least.
+    /// The border at which dividing costs least; the axes stand in lanes.
     #[inline]
     pub(super) fn cheapest(&self, grid: &Grid, rules: &Rules) -> Option<Cut> {
-        let mut best: Option<Cut> = None;
-        let mut least = f32::INFINITY;
-        for axis in 0..3 {
-            if grid.scale[axis] == 0.0 {
-                continue;
-            }
-            let (hulls, counts) = (&self.hulls[axis], &self.counts[axis]);
-            // What the parts behind each border cost; then the parts before it.
-            let mut behind = [(0.0, 0); N];
-            let (mut hull, mut count) = (Hull::EMPTY, 0);
-            for bin in (1..grid.count.min(N)).rev() {
-                hull = hull.union(hulls[bin % N]);
-                count += counts[bin % N];
-                behind[bin % N] = (rules.cost(hull, count), count);
-            }
-            let (mut hull, mut count) = (Hull::EMPTY, 0);
-            for border in 1..grid.count.min(N) {
-                hull = hull.union(hulls[(border - 1) % N]);
-                count += counts[(border - 1) % N];
-                let (other, right) = behind[border % N];
-                let cost = rules.cost(hull, count) + other;
-                if cost < least && rules.allow(count, right) {
-                    least = cost;
-                    best = Some(Cut { grid: *grid, axis, left: count, border: ROUND + border as f32, cost });
-                }
-            }
+        let last = grid.count.min(N);
+        // What the parts behind each border cost; then the parts before it.
+        let mut behind = [Vec4::ZERO; N];
+        let (mut hulls, mut counts) = ([Hull::EMPTY; 3], [0; 4]);
+        for bin in (1..last).rev() {
+            unite(&mut hulls, &self.hulls[bin % N]);
+            add(&mut counts, &self.counts[bin % N]);
+            behind[bin % N] = rules.costs(&hulls, &counts);
         }
-        best
+        let (mut least, mut borders) = (Vec4::INFINITY, Vec4::ZERO);
+        (hulls, counts) = ([Hull::EMPTY; 3], [0; 4]);
+        for border in 1..last {
+            unite(&mut hulls, &self.hulls[(border - 1) % N]);
+            add(&mut counts, &self.counts[(border - 1) % N]);
+            let cost = rules.costs(&hulls, &counts) + behind[border % N];
+            // Never where a part is empty: its cost is not a number.
+            let is_less = cost.cmplt(least);
+            least = Vec4::select(is_less, cost, least);
+            borders = Vec4::select(is_less, Vec4::splat(ROUND + border as f32), borders);
+        }
+        let [x, y, z, _] = least.to_array();
+        let axis = if x <= y && x <= z { 0 } else { 1 + usize::from(z < y) };
+        let cut = Cut { grid: *grid, axis, left: 0, border: borders[axis], cost: least[axis] };
+        (cut.cost < f32::INFINITY).then(|| Cut { left: self.before(&cut), ..cut })
+    }
+}
+
+/// Enlarges boxes by others.
+#[inline(always)]
+fn unite(hulls: &mut [Hull; 3], others: &[Hull; 3]) {
+    for (hull, other) in hulls.iter_mut().zip(others) {
+        *hull = hull.union(*other);
+    }
+}
+
+/// Adds counts to counts.
+#[inline(always)]
+fn add(counts: &mut [u32; 4], others: &[u32; 4]) {
+    for (count, other) in counts.iter_mut().zip(others) {
+        *count += other;
     }
 }
 
@@ -124,8 +133,6 @@ impl<const N: usize> Bins<N> {
 pub(super) struct Rules {
     /// What makes the set's longest edge a length of 1.
     pub(super) scale: f32,
-    /// Binary logarithm of the items that are tested at once.
-    pub(super) leaf: u32,
     /// The most items that a part may have, so that it can be divided further within the depth.
     pub(super) most: u32,
 }
@@ -134,8 +141,21 @@ impl Rules {
     /// Of a leaf with so many items in `hull`: one test for each full leaf.
     #[inline(always)]
     pub(super) fn cost(&self, hull: Hull, count: u32) -> f32 {
-        let tests = (count + (1 << self.leaf) - 1) >> self.leaf;
-        hull.weight(self.scale) * tests as f32
+        hull.weight(self.scale) * Self::tests(count)
+    }
+
+    /// As [`cost`](Self::cost), of three parts; no number if there are no items, and infinite if there are too many.
+    #[inline(always)]
+    fn costs(&self, hulls: &[Hull; 3], counts: &[u32; 4]) -> Vec4 {
+        let tests = counts.map(|count| if count > self.most { f32::INFINITY } else { Self::tests(count) });
+        Hull::weights(hulls, self.scale) * Vec4::from_array(tests)
+    }
+
+    /// How many full leaves there are at least.
+    #[inline(always)]
+    fn tests(count: u32) -> f32 {
+        // As a signed number, which all machines convert at once.
+        count.div_ceil(LEAF) as i32 as f32
     }
 
     /// The same, had each item its own test.
@@ -165,6 +185,11 @@ pub(super) struct Cut {
 }
 
 impl Cut {
+    /// How many bins are before it.
+    fn bins(&self) -> usize {
+        (self.border - ROUND) as usize
+    }
+
     /// Whether an item goes before it.
     #[inline(always)]
     pub(super) fn is_left(&self, item: &Item) -> bool {

@@ -2,9 +2,9 @@ use std::vec::Vec;
 
 use super::{
     bins::{self, Bins, Cut, Rules},
+    few::Few,
     partition::{partition, partition_parallel},
     spatial::Plane,
-    sweep::Sorted,
     task::{Parts, Task},
 };
 use crate::primitives::Primitives;
@@ -13,8 +13,8 @@ use crate::primitives::Primitives;
 pub(super) enum Division {
     /// At a border between bins; and what is in them by chunk, if the set is large.
     Cut(Cut, Vec<Bins<{ bins::MOST }>>),
-    /// Between neighbours along an axis.
-    Sorted(Sorted),
+    /// As is best, because they are few.
+    Few(Few),
     /// At a plane, which cuts what lies on both sides.
     Plane(Plane, Rules),
     /// As it stands, because nothing tells the items apart.
@@ -29,7 +29,7 @@ impl Division {
         let mut parts = Parts { counts: halves(count), is_moved: false, extents: None };
         match self {
             Self::Cut(cut, _) => parts.counts = [cut.left as usize, count - cut.left as usize],
-            Self::Sorted(sorted) => parts.counts = [sorted.left, count - sorted.left],
+            Self::Few(few) => parts.counts = [few.left(), count - few.left()],
             Self::Plane(plane, rules) => {
                 let counts = plane.divide(task.items, task.spare, count, (primitives, rules));
                 let [left, right] = counts;
@@ -56,7 +56,7 @@ impl Division {
                 parts.extents = Some(partition_parallel(items, sides, &counts, cut));
                 parts.is_moved = true;
             }
-            Self::Sorted(sorted) => sorted.place(items, others),
+            Self::Few(few) => few.place(items, others),
             Self::Plane(..) | Self::Halves => others.copy_from_slice(&items[left..]),
         }
         parts

@@ -1,28 +1,29 @@
 //! From the top down: a set is divided where the surface area heuristic expects the least work.
 
-use std::{convert::Infallible, mem, ops::ControlFlow, vec::Vec};
+use std::{boxed::Box, ops::ControlFlow, vec::Vec};
 
+use bytemuck::Zeroable;
 use rayon::prelude::*;
 
 use super::{
-    MAX_DEPTH, Options,
+    LEAF, MAX_DEPTH, Options,
     bins::{self, Bins, Grid, Rules},
+    branch::Branch,
     division::Division,
+    few::{self, Few},
     item::Item,
-    node::Node,
     partition::CHUNK,
     progress::Monitor,
     spatial::{Cells, Plane, Spread},
-    sweep::{self, Sorted},
-    task::{SHARED, Task},
+    task::{Parts, SHARED, Task},
 };
 use crate::{
     primitives::Primitives,
-    wide::{hull::Hull, node::WIDTH},
+    wide::{
+        binary::{Binary, BinaryNode},
+        hull::Hull,
+    },
 };
-
-/// So few primitives fit into a leaf, whatever they are.
-const SURE: u32 = 2;
 
 /// Sets of fewer items are left to one thread.
 const ALONE: usize = 4096;
@@ -34,84 +35,61 @@ const OVERLAP: f32 = 1.0e-3;
 pub(super) struct Grower<'g, P: ?Sized, B> {
     pub(super) primitives: &'g P,
     pub(super) options: &'g Options,
-    /// Binary logarithm of the most items in a leaf.
-    pub(super) leaf: u32,
     /// The box of everything.
     pub(super) whole: Hull,
-    /// Whether primitives of these numbers can be in one leaf.
-    pub(super) fits: &'g (dyn Fn(&[u32]) -> bool + Sync),
     pub(super) monitor: &'g Monitor<'g, B>,
 }
 
 impl<P: Primitives + Sync + ?Sized, B: Send> Grower<'_, P, B> {
-    /// Builds the hierarchy of a set; its root.
-    pub(super) fn grow(&self, task: Task<'_>) -> ControlFlow<B, Node> {
+    /// Builds the hierarchy of a set.
+    pub(super) fn grow(&self, mut task: Task<'_>) -> ControlFlow<B, Branch> {
         let size = task.items.len();
-        if size <= ALONE {
-            let node = self.grow_alone(task);
+        let divided = if size > ALONE { self.divide(&mut task) } else { None };
+        let Some(parts) = divided else {
+            let mut part = Binary { nodes: Vec::with_capacity(2 * size), references: Vec::with_capacity(size) };
+            part.nodes.push(BinaryNode::zeroed());
+            self.grow_alone(task, 0, &mut part);
             self.monitor.advance(size as u32)?;
-            return ControlFlow::Continue(node);
-        }
-        self.monitor.advance(0)?;
-        self.inner(task, |[left, right]| {
-            let (left, right) = rayon::join(|| self.grow(left), || self.grow(right));
-            ControlFlow::Continue([left?, right?])
-        })
-    }
-
-    /// As [`grow`](Self::grow), on one thread and without a word.
-    fn grow_alone(&self, task: Task<'_>) -> Node {
-        let node = self.inner(task, |[left, right]| {
-            ControlFlow::<Infallible, _>::Continue([self.grow_alone(left), self.grow_alone(right)])
-        });
-        let ControlFlow::Continue(node) = node;
-        node
-    }
-
-    /// A node, its children made by `both`; or a leaf.
-    fn inner<R>(
-        &self,
-        mut task: Task<'_>,
-        both: impl FnOnce([Task<'_>; 2]) -> ControlFlow<R, [Node; 2]>,
-    ) -> ControlFlow<R, Node> {
-        let (hull, first, base) = (task.extent.hull, task.first, task.base);
-        let Some(parts) = self.divide(&mut task) else {
-            for (reference, item) in task.references.iter_mut().zip(&task.items[..task.count]) {
-                *reference = item.number();
-            }
-            return ControlFlow::Continue(Node::leaf(hull, first, task.count as u32));
+            return ControlFlow::Continue(Branch::Part(part));
         };
-        let (place, nodes) = mem::take(&mut task.nodes).split_at_mut(2);
-        task.nodes = nodes;
-        place.copy_from_slice(&both(task.split(&parts))?);
-        ControlFlow::Continue(Node::inner(hull, base))
+        self.monitor.advance(0)?;
+        let hull = task.extent.hull;
+        let [left, right] = task.split(&parts);
+        let (left, right) = rayon::join(|| self.grow(left), || self.grow(right));
+        ControlFlow::Continue(Branch::Pair(hull, Box::new([left?, right?])))
+    }
+
+    /// As [`grow`](Self::grow), on one thread and without a word; the root gets its `place` among the nodes.
+    fn grow_alone(&self, mut task: Task<'_>, place: usize, part: &mut Binary) {
+        let hull = task.extent.hull;
+        let Some(parts) = self.divide(&mut task) else {
+            part.nodes[place] = BinaryNode::leaf(hull, part.references.len(), task.count);
+            part.references.extend(task.items[..task.count].iter().map(Item::number));
+            return;
+        };
+        let first = part.nodes.len();
+        part.nodes[place] = BinaryNode::inner(hull, first);
+        part.nodes.extend([BinaryNode::zeroed(); 2]);
+        for (place, task) in (first..).zip(task.split(&parts)) {
+            self.grow_alone(task, place, part);
+        }
     }
 
     /// Divides a set; none if it is to be a leaf. Not inlined, so that what it needs is not on the stack of all above.
     #[inline(never)]
-    fn divide(&self, task: &mut Task<'_>) -> Option<super::task::Parts> {
+    fn divide(&self, task: &mut Task<'_>) -> Option<Parts> {
         Some(self.best(task)?.place(task, self.primitives))
-    }
-
-    /// Whether items can be in one leaf.
-    fn fits(&self, items: &[Item]) -> bool {
-        if items.len() <= SURE as usize || items.len() > 1 << self.leaf {
-            return items.len() <= 1 << self.leaf;
-        }
-        let numbers: heapless::Vec<u32, WIDTH> = items.iter().map(Item::number).collect();
-        (self.fits)(&numbers)
     }
 
     /// How to divide a set at the least cost; none if it is to be a leaf.
     fn best(&self, task: &Task<'_>) -> Option<Division> {
-        let must = !self.fits(&task.items[..task.count]);
-        if task.count <= 1 || (!must && (self.options.sorted == 0 || task.levels == 0)) {
+        let must = task.count > LEAF as usize;
+        if task.count <= 1 || (!must && (self.options.step_cost == f32::INFINITY || task.levels == 0)) {
             return None;
         }
         let scale = task.extent.hull.scale();
-        let most = SURE.min(1 << self.leaf);
-        let below = u32::try_from(u64::from(most) << task.levels.saturating_sub(1).min(32)).unwrap_or(u32::MAX);
-        let rules = Rules { scale, leaf: self.leaf, most: below };
+        let below = u32::try_from(u64::from(LEAF) << task.levels.saturating_sub(1).min(32)).unwrap_or(u32::MAX);
+        let rules = Rules { scale, most: below };
         let whole = task.extent.hull.weight(scale);
         let pays = |cost: f32| must || cost + whole * self.options.step_cost < whole;
         let Some((cost, parts, division)) = self.whole_items(task, &rules) else {
@@ -126,9 +104,9 @@ impl<P: Primitives + Sync + ?Sized, B: Send> Grower<'_, P, B> {
     /// The best way to divide a set without cuts, what both parts cost and their boxes.
     fn whole_items(&self, task: &Task<'_>, rules: &Rules) -> Option<(f32, [Hull; 2], Division)> {
         let items = &task.items[..task.count];
-        if items.len() <= (self.options.sorted as usize).min(sweep::MOST) {
-            let sorted = Sorted::best(items, rules)?;
-            return Some((sorted.cost, sorted.hulls, Division::Sorted(sorted)));
+        if items.len() <= (self.options.few as usize).clamp(2, few::MOST) {
+            let few = Few::best(items, rules)?;
+            return Some((few.cost, few.hulls, Division::Few(few)));
         }
         let count = (4 + items.len() / 16).min(self.options.bins as usize);
         let grid = Grid::new(task.extent.middles, count);

@@ -1,7 +1,7 @@
 //! The builder of the binary hierarchy, on all threads of the caller's pool.
 //!
-//! Boxes are gathered; sets of them are divided from the top down ([`grow`]) at borders of [`bins`], between sorted items
-//! ([`sweep`]) or at planes that cut triangles ([`spatial`]); then nodes find better places ([`reinsert`]), and all is put in
+//! Boxes are gathered; sets of them are divided from the top down ([`grow`]) at borders of [`bins`], in the best way if they are
+//! [`few`], or at planes that cut triangles ([`spatial`]); then nodes find better places ([`reinsert`]), and all is put in
 //! the order of a walk ([`layout`]).
 //!
 //! The same hierarchy for any number of threads: boxes are unions and counts are sums, which come out alike in any order;
@@ -13,17 +13,17 @@
 //! at a bounded number of times, recursion is as deep, and any input takes time near linear.
 
 mod bins;
+mod branch;
 mod division;
+mod few;
 mod grow;
 mod item;
 mod layout;
-mod node;
 mod options;
 mod partition;
 mod progress;
 mod reinsert;
 mod spatial;
-mod sweep;
 mod task;
 
 #[cfg(test)]
@@ -41,7 +41,6 @@ use self::{
     grow::Grower,
     item::Item,
     layout::lay_out,
-    node::Node,
     partition::CHUNK,
     reinsert::reinsert,
     task::{Task, extent},
@@ -52,15 +51,18 @@ use crate::{error::BuildError, primitives::Primitives};
 /// The greatest number of nodes below one another, the root not counted.
 pub(super) const MAX_DEPTH: u32 = 64;
 
+/// The most primitives in a leaf: the collapse has more to choose from than among blocks, and two triangles have room in one
+/// whatever corners they have.
+const LEAF: u32 = 2;
+
 /// A round of finding better places is so many times less work than there are primitives.
 const ROUND: u32 = 8;
 
 /// Builds a hierarchy over `primitives`, on the threads of the current `rayon` pool; `monitor` hears of progress, and may
-/// break it off. Leaves have two primitives at most, or more if `fits` says so of their numbers.
+/// break it off. Leaves have [`LEAF`] primitives at most.
 pub(super) fn build<P: Primitives + Sync + ?Sized, B: Send>(
     primitives: &P,
     options: &Options,
-    fits: &(dyn Fn(&[u32]) -> bool + Sync),
     monitor: &Monitor<'_, B>,
 ) -> Result<ControlFlow<B, Binary>, BuildError> {
     let items = gather(primitives)?;
@@ -76,58 +78,41 @@ pub(super) fn build<P: Primitives + Sync + ?Sized, B: Send>(
     for size in sizes.into_iter().flatten() {
         monitor.expect(size as u32 + options.reinsertions.saturating_mul(count / ROUND));
     }
-    let growth = Growth { primitives, options, fits, monitor };
-    let mut best: Option<Grown> = None;
+    let growth = Growth { primitives, options, monitor };
+    let mut best: Option<Binary> = None;
     for size in sizes.into_iter().flatten() {
         let grown = match growth.grow(items.clone(), size) {
             ControlFlow::Continue(grown) => grown,
             ControlFlow::Break(reason) => return Ok(ControlFlow::Break(reason)),
         };
         best = match best {
-            Some(best) if best.cost() < grown.cost() => Some(best),
+            Some(best) if cost(&best) < cost(&grown) => Some(best),
             _ => Some(grown),
         };
     }
-    Ok(ControlFlow::Continue(best.map_or_else(Binary::default, |best| best.finish())))
+    let best = best.unwrap_or_default();
+    Ok(ControlFlow::Continue(if options.reinsertions > 0 { lay_out(&best) } else { best }))
 }
 
 /// What hierarchies over the same primitives have in common.
 struct Growth<'g, P: ?Sized, B> {
     primitives: &'g P,
     options: &'g Options,
-    fits: &'g (dyn Fn(&[u32]) -> bool + Sync),
     monitor: &'g Monitor<'g, B>,
 }
 
 impl<P: Primitives + Sync + ?Sized, B: Send> Growth<'_, P, B> {
-    /// The hierarchy over `items`, of at most `size` references.
-    fn grow(&self, mut items: Vec<Item>, size: usize) -> ControlFlow<B, Grown> {
-        let &Self { primitives, options, fits, monitor } = self;
+    /// The hierarchy over `items`, of at most `size` references; if nodes were put elsewhere, not in the order of a walk.
+    fn grow(&self, mut items: Vec<Item>, size: usize) -> ControlFlow<B, Binary> {
+        let &Self { primitives, options, monitor } = self;
         let count = items.len();
         let extent = extent(&items);
         items.resize(size, Item::NOTHING);
         let mut spare: Vec<Item> = bytemuck::zeroed_vec(size);
-        let mut references = bytemuck::zeroed_vec(size);
-        let mut nodes: Vec<Node> = bytemuck::zeroed_vec(size * 2 - 1);
-        let leaf = options.leaf_size.clamp(1, 8).next_power_of_two().ilog2();
-        let grower = Grower { primitives, options, leaf, whole: extent.hull, fits, monitor };
-        if let Some((root, below)) = nodes.split_first_mut() {
-            *root = grower.grow(Task {
-                items: &mut items,
-                count,
-                spare: &mut spare,
-                references: &mut references,
-                nodes: below,
-                first: 0,
-                base: 1,
-                extent,
-                levels: MAX_DEPTH,
-            })?;
-        }
-        let mut grown = Grown { nodes, references };
+        let grower = Grower { primitives, options, whole: extent.hull, monitor };
+        let task = Task { items: &mut items, count, spare: &mut spare, extent, levels: MAX_DEPTH };
+        let mut grown = grower.grow(task)?.join();
         if options.reinsertions > 0 {
-            let (nodes, references) = lay_out(&grown.nodes, &grown.references, |node| node);
-            grown = Grown { nodes, references };
             let round = primitives.len() / ROUND;
             reinsert(&mut grown.nodes, options.reinsertions, options.reinserted, || monitor.advance(round))?;
         }
@@ -135,25 +120,12 @@ impl<P: Primitives + Sync + ?Sized, B: Send> Growth<'_, P, B> {
     }
 }
 
-/// A hierarchy that has not been brought into order.
-struct Grown {
-    nodes: Vec<Node>,
-    references: Vec<u32>,
-}
-
-impl Grown {
-    /// The work that the surface area heuristic expects of a ray, where there are no nodes that nothing links to.
-    fn cost(&self) -> f64 {
-        let Some(root) = self.nodes.first() else { return 0.0 };
-        let scale = root.hull().scale();
-        // A pair of children costs as much as a leaf.
-        self.nodes.iter().map(|node| f64::from(node.hull().weight(scale))).sum()
-    }
-
-    fn finish(&self) -> Binary {
-        let (nodes, references) = lay_out(&self.nodes, &self.references, Node::finish);
-        Binary { nodes, references }
-    }
+/// The work that the surface area heuristic expects of a ray.
+fn cost(binary: &Binary) -> f64 {
+    let Some(root) = binary.nodes.first() else { return 0.0 };
+    let scale = root.hull().scale();
+    // A pair of children costs as much as a leaf.
+    binary.nodes.iter().map(|node| f64::from(node.hull().weight(scale))).sum()
 }
 
 /// The boxes of all primitives.

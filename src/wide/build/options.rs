@@ -7,15 +7,13 @@
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// The most primitives in a leaf of the binary hierarchy, 1, 2, 4 or 8: fewer take longer, and leave the wide one more to
-    /// choose from.
-    pub leaf_size: u32,
-    /// What a step from a node to its children costs, in tests of a leaf.
+    /// What a step from a node to its children costs, in tests of a leaf; if it is infinite, sets that fit into a leaf are not
+    /// divided.
     pub step_cost: f32,
     /// The most bins per axis at whose borders sets are divided, 2 … 32.
     pub bins: u32,
-    /// Sets of at most so many are sorted and divided anywhere, 0 … 16; at 0, sets that fit into a leaf are not divided.
-    pub sorted: u32,
+    /// Sets of at most so many are divided in the best of all ways, 2 … 6.
+    pub few: u32,
     /// How often nodes are taken out and put where they fit best.
     pub reinsertions: u32,
     /// The part of all nodes that is taken out each time, those with the largest boxes.
@@ -32,10 +30,9 @@ impl Options {
     #[must_use]
     pub const fn fast() -> Self {
         Self {
-            leaf_size: 4,
-            step_cost: 0.5,
+            step_cost: f32::INFINITY,
             bins: 16,
-            sorted: 0,
+            few: 4,
             reinsertions: 0,
             reinserted: 0.0,
             references: 1.0,
@@ -46,7 +43,7 @@ impl Options {
     /// A good deal of both: half as fast to build, and up to a quarter less work for rays where primitives differ in size.
     #[must_use]
     pub const fn balanced() -> Self {
-        Self { leaf_size: 2, step_cost: 0.3, sorted: 4, reinsertions: 4, reinserted: 0.05, ..Self::fast() }
+        Self { step_cost: 0.3, reinsertions: 4, reinserted: 0.05, ..Self::fast() }
     }
 
     /// The least work for rays: the better one of a hierarchy with cuts and one without.

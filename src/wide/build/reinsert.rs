@@ -7,7 +7,8 @@ use std::{cmp::Reverse, ops::ControlFlow, vec, vec::Vec};
 
 use rayon::prelude::*;
 
-use super::{MAX_DEPTH, node::Node, partition::CHUNK};
+use super::{MAX_DEPTH, partition::CHUNK};
+use crate::wide::binary::BinaryNode;
 
 /// Nodes looked at for each that is taken out: most searches end earlier by themselves.
 const PATIENCE: u32 = 256;
@@ -25,7 +26,7 @@ struct Move {
 
 /// A hierarchy with links upward. Pairs stand at odd numbers, behind the root.
 struct Tree<'n> {
-    nodes: &'n mut [Node],
+    nodes: &'n mut [BinaryNode],
     /// By pair: the node above, and how many levels are below that.
     above: Vec<Above>,
     scale: f32,
@@ -45,7 +46,7 @@ const fn sibling(node: u32) -> u32 {
 /// Improves a hierarchy whose children stand behind their parents, `rounds` times; each time the part `ratio` of its nodes
 /// is looked at, those most likely met by rays. After each round `go_on` is asked.
 pub(super) fn reinsert<B>(
-    nodes: &mut [Node],
+    nodes: &mut [BinaryNode],
     rounds: u32,
     ratio: f32,
     go_on: impl Fn() -> ControlFlow<B>,
@@ -79,21 +80,21 @@ impl Tree<'_> {
     /// How many levels are below a node.
     fn height(&self, node: u32) -> u32 {
         let node = self.nodes[node as usize];
-        if node.count() > 0 { 0 } else { self.above(node.first()).height }
+        if node.count() > 0 { 0 } else { self.above(node.first() as u32).height }
     }
 
     /// Puts a node into a place.
-    fn put(&mut self, place: u32, node: Node) {
+    fn put(&mut self, place: u32, node: BinaryNode) {
         self.nodes[place as usize] = node;
         if node.count() == 0 {
-            self.above[(node.first() as usize - 1) / 2].parent = place;
+            self.above[(node.first() - 1) / 2].parent = place;
         }
     }
 
     /// Makes box and height of an inner node right; whether they were not.
     fn fit(&mut self, place: u32) -> bool {
         let node = self.nodes[place as usize];
-        let [left, right] = [node.first(), node.first() + 1];
+        let [left, right] = [node.first() as u32, node.first() as u32 + 1];
         let hull = self.nodes[left as usize].hull().union(self.nodes[right as usize].hull());
         let height = 1 + self.height(left).max(self.height(right));
         let fitted = node.with_hull(hull);
@@ -173,7 +174,7 @@ impl Tree<'_> {
         let beside = self.nodes[to as usize];
         self.put(pair, beside);
         self.put(pair + 1, moved);
-        self.put(to, Node::inner(beside.hull(), pair));
+        self.put(to, BinaryNode::inner(beside.hull(), pair as usize));
         self.fit(to);
         self.fit_above(to);
     }
@@ -223,8 +224,8 @@ impl<'t> Search<'t> {
                 let below = here + node.hull().weight(scale);
                 if node.count() == 0 && below - self.own > self.least {
                     // If there is no room, what is left out is not looked at.
-                    let _ = stack.push((node.first() + 1, below));
-                    next = Some((node.first(), below));
+                    let _ = stack.push((node.first() as u32 + 1, below));
+                    next = Some((node.first() as u32, below));
                 }
             }
             next = next.or_else(|| stack.pop());

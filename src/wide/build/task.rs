@@ -4,27 +4,19 @@ use rayon::prelude::*;
 
 use super::{
     item::{Extent, Item},
-    node::Node,
     partition::CHUNK,
 };
 
 /// Sets of more items are divided by all threads together.
 pub(super) const SHARED: usize = 4 * CHUNK;
 
-/// A set of items and the place for its hierarchy.
+/// A set of items.
 pub(super) struct Task<'t> {
     /// The items, and room for those that cuts add.
     pub(super) items: &'t mut [Item],
     pub(super) count: usize,
     /// As long.
     pub(super) spare: &'t mut [Item],
-    /// As long.
-    pub(super) references: &'t mut [u32],
-    /// For all nodes below: two less than twice as many; of a task that is split, the children are taken out.
-    pub(super) nodes: &'t mut [Node],
-    /// The numbers of the first reference and node.
-    pub(super) first: u32,
-    pub(super) base: u32,
     pub(super) extent: Extent,
     /// How often it may be divided.
     pub(super) levels: u32,
@@ -58,32 +50,10 @@ impl<'t> Task<'t> {
         let (spare, rights) = self.spare.split_at_mut(border);
         let (others, rights) = if parts.is_moved { (others, rights) } else { (rights, others) };
         let extents = parts.extents.unwrap_or_else(|| [extent(&items[..left]), extent(&others[..right])]);
-        let references = self.references.split_at_mut(border);
-        let nodes = self.nodes.split_at_mut(2 * border - 2);
-        let (levels, base) = (self.levels.saturating_sub(1), self.base + 2);
+        let levels = self.levels.saturating_sub(1);
         [
-            Self {
-                items,
-                count: left,
-                spare,
-                references: references.0,
-                nodes: nodes.0,
-                first: self.first,
-                base,
-                extent: extents[0],
-                levels,
-            },
-            Self {
-                items: others,
-                count: right,
-                spare: rights,
-                references: references.1,
-                nodes: nodes.1,
-                first: self.first + border as u32,
-                base: base + 2 * border as u32 - 2,
-                extent: extents[1],
-                levels,
-            },
+            Self { items, count: left, spare, extent: extents[0], levels },
+            Self { items: others, count: right, spare: rights, extent: extents[1], levels },
         ]
     }
 }

@@ -7,7 +7,7 @@ use std::{
 
 use glam::Vec3;
 
-use super::{MAX_DEPTH, Monitor, Options, Progress, build};
+use super::{LEAF, MAX_DEPTH, Monitor, Options, Progress, build};
 use crate::{
     accel::List,
     error::BuildError,
@@ -47,17 +47,12 @@ fn presets() -> [Options; 3] {
     [Options::fast(), Options::balanced(), Options::best()]
 }
 
-/// Stands for a rule by which sets of more than two have no room in a leaf.
-fn fits(numbers: &[u32]) -> bool {
-    numbers.iter().sum::<u32>() % 4 > 0
-}
-
 fn try_build<P: Primitives + Sync>(
     primitives: &P,
     options: &Options,
     tell: impl Fn(Progress) -> ControlFlow<()> + Sync,
 ) -> Result<ControlFlow<(), Binary>, BuildError> {
-    build(primitives, options, &fits, &Monitor::new(&tell))
+    build(primitives, options, &Monitor::new(&tell))
 }
 
 fn built<P: Primitives + Sync>(primitives: &P, options: &Options) -> Binary {
@@ -85,21 +80,20 @@ fn check<P: Primitives>(binary: &Binary, primitives: &P, options: &Options) -> S
     let mut pending = vec![0; nodes.len().min(1)];
     while let Some(place) = pending.pop() {
         let node = &nodes[place];
-        let first = node.first as usize;
+        let first = node.first();
         shape.depth = shape.depth.max(depths[place]);
-        if node.count > 0 {
-            assert!(node.count <= options.leaf_size && first == next_reference, "{node:?}");
-            next_reference += node.count as usize;
-            assert!(node.count <= 2 || fits(&references[first..next_reference]));
-            shape.work += u64::from(node.count * depths[place]);
+        if node.count() > 0 {
+            assert!(node.count() <= LEAF as usize && first == next_reference, "{node:?}");
+            next_reference += node.count();
+            shape.work += node.count() as u64 * u64::from(depths[place]);
             for &number in &references[first..next_reference] {
                 times[number as usize] += 1;
                 let bounds = primitives.bounds(number);
                 let is_cut = options.references > 1.0 && primitives.is_certified(number);
                 let met = if is_cut {
-                    primitives.clip(number, &node.bounds).is_some()
+                    primitives.clip(number, &node.hull().bounds()).is_some()
                 } else {
-                    contains(&node.bounds, &bounds)
+                    contains(&node.hull().bounds(), &bounds)
                 };
                 assert!(met, "{number} in {node:?}");
             }
@@ -108,7 +102,7 @@ fn check<P: Primitives>(binary: &Binary, primitives: &P, options: &Options) -> S
             assert_eq!(first, next_pair);
             next_pair += 2;
             for child in [first, first + 1] {
-                assert!(contains(&node.bounds, &nodes[child].bounds));
+                assert!(contains(&node.hull().bounds(), &nodes[child].hull().bounds()));
                 depths[child] = depths[place] + 1;
             }
             pending.extend([first + 1, first]);
@@ -132,15 +126,15 @@ fn closest<P: Primitives>(binary: &Binary, primitives: &P, ray: &PreparedRay, wo
     while let Some(place) = stack.pop() {
         let node = &binary.nodes[place];
         work[0] += 1;
-        if !node.bounds.interval(ray).is_some_and(|(enter, exit)| exit >= start.t && enter <= end.t) {
+        if !node.hull().bounds().interval(ray).is_some_and(|(enter, exit)| exit >= start.t && enter <= end.t) {
             continue;
         }
-        let first = node.first as usize;
-        if node.count == 0 {
+        let first = node.first();
+        if node.count() == 0 {
             stack.extend([first, first + 1]);
             continue;
         }
-        for &number in &binary.references[first..][..node.count as usize] {
+        for &number in &binary.references[first..][..node.count()] {
             work[1] += 1;
             if let Some(hit) = primitives.intersect(number, ray, &Span::new(start, end)) {
                 (end, best) = (hit, Some(hit));
@@ -153,7 +147,7 @@ fn closest<P: Primitives>(binary: &Binary, primitives: &P, ray: &PreparedRay, wo
 /// Random rays get the list's answers; what they looked at.
 fn answer_alike(binary: &Binary, mesh: &Mesh<'_>, rays: u32) -> [u64; 2] {
     let scene = Scene::new(List::new(mesh).unwrap(), mesh).unwrap();
-    let bounds = binary.nodes[0].bounds;
+    let bounds = binary.nodes[0].hull().bounds();
     let mut random = Random::new(5);
     let mut work = [0; 2];
     for _ in 0..rays {
@@ -195,7 +189,7 @@ fn a_series_deeper_than_the_rules_stays_within_them() {
     let size = |i: i32| (2.0_f64.powi(125) / 14.2_f64.powi(i)) as f32;
     for count in [64, 66, 68] {
         let soup = Soup::new((0..count).map(|i| [Vec3::X * size(i); 3]));
-        for options in presets().into_iter().chain([Options { leaf_size: 8, sorted: 16, ..Options::balanced() }]) {
+        for options in presets().into_iter().chain([Options { few: 6, ..Options::balanced() }]) {
             check(&built(&soup.mesh(), &options), &soup.mesh(), &options);
         }
     }
@@ -214,16 +208,16 @@ fn a_few_primitives() {
 #[test]
 fn every_knob() {
     let soup = Soup::random(3000, 0.1);
-    for leaf_size in [1, 2, 4, 8] {
+    for few in 0..8 {
         for options in presets() {
-            let options = Options { leaf_size, ..options };
+            let options = Options { few, ..options };
             check(&built(&soup.mesh(), &options), &soup.mesh(), &options);
         }
     }
-    for (bins, sorted, reinsertions, reinserted, references) in
+    for (bins, few, reinsertions, reinserted, references) in
         [(0, 0, 1, 1.0, 0.0), (99, 99, 1, 99.0, 2.0), (2, 64, 0, -1.0, f32::NAN)]
     {
-        let options = Options { bins, sorted, reinsertions, reinserted, references, ..Options::fast() };
+        let options = Options { bins, few, reinsertions, reinserted, references, ..Options::fast() };
         let binary = built(&soup.mesh(), &options);
         answer_alike(&binary, &soup.mesh(), 20);
     }
@@ -255,8 +249,8 @@ fn rays_look_at_little() {
 
 /// The work that the surface area heuristic expects of a ray: the surface of all nodes, relative to that of the root.
 fn expected_work(binary: &Binary) -> f32 {
-    let areas: f32 = binary.nodes.iter().map(|node| node.bounds.half_area()).sum();
-    areas / binary.nodes[0].bounds.half_area()
+    let areas: f32 = binary.nodes.iter().map(|node| node.hull().bounds().half_area()).sum();
+    areas / binary.nodes[0].hull().bounds().half_area()
 }
 
 /// Long slivers in all directions, whose boxes are mostly empty, among small triangles.
@@ -334,10 +328,7 @@ fn any_number_of_threads_builds_the_same() {
         });
         check(&binaries[0], &soup.mesh(), &options);
         let bits = |binary: &Binary| -> Vec<u32> {
-            let words = |v: Vec3| v.to_array().map(f32::to_bits);
-            let nodes =
-                binary.nodes.iter().flat_map(|n| [words(n.bounds.min), words(n.bounds.max), [n.first, n.count, 0]]);
-            nodes.flatten().chain(binary.references.iter().copied()).collect()
+            bytemuck::cast_slice(&binary.nodes).iter().chain(&binary.references).copied().collect()
         };
         let first = bits(&binaries[0]);
         assert!(binaries.iter().all(|binary| bits(binary) == first));

@@ -5,6 +5,7 @@
 //! written where it belongs when all sizes are known ([`mod@write`]). Each step by all threads; who does what depends on sizes alone.
 
 mod plan;
+mod repeats;
 mod sketch;
 mod write;
 
@@ -58,14 +59,14 @@ pub(super) fn collapse<B: Send>(
     if words > Child::MAX_WORDS {
         return ControlFlow::Continue(None);
     }
-    (tree.root, tree.bounds, tree.stack) = (Some(Child::node(0)), root.bounds, (WIDTH - 1) * top.depth + 1);
+    (tree.root, tree.bounds, tree.stack) = (Some(Child::node(0)), root.hull().bounds(), (WIDTH - 1) * top.depth + 1);
     // Behind the last block there is as much as a walk may look at.
     (tree.nodes, tree.blocks) = (zeroed_vec(count), zeroed_vec(words + BLOCK_WORDS));
     let (nodes, words) = (&mut tree.nodes[..], &mut tree.blocks[..]);
     let mut rest = Places { nodes, words, first_node: 0, first_word: 0 };
     let tasks: Vec<_> = iter::once(&top).chain(&parts).map(|part| (rest.split_off(part), part)).collect();
     tasks.into_par_iter().try_for_each(|(places, part)| {
-        places.write(&plan, part, &triangle);
+        places.write(&plan, part);
         monitor.advance(0)
     })?;
     monitor.advance(work)?;

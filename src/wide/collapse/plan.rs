@@ -1,12 +1,13 @@
-use std::{vec, vec::Vec};
+use std::{ops::Range, vec, vec::Vec};
 
+use rayon::prelude::*;
+
+use super::repeats::Repeats;
 use crate::{
     geometry::Triangle,
     wide::{
         binary::{Binary, BinaryNode},
         block,
-        corners::Corners,
-        hull::Hull,
         node::{Node, WIDTH},
     },
 };
@@ -41,6 +42,9 @@ struct Part {
 #[derive(Debug)]
 pub(super) struct Plan<'b> {
     pub binary: &'b Binary,
+    /// That of each reference.
+    pub triangles: Vec<Triangle>,
+    pub repeats: Repeats,
     parts: Vec<Part>,
     /// What makes the longest edge a length of 1, so that costs neither overflow nor vanish.
     scale: f32,
@@ -58,19 +62,24 @@ impl Part {
 impl<'b> Plan<'b> {
     /// What costs least, on all threads, where a byte for each triangle costs as much as so many nodes that all rays visit.
     pub(super) fn new(binary: &'b Binary, price: f32, triangle: &(impl Fn(u32) -> Triangle + Sync)) -> Self {
-        let scale = binary.nodes.first().map_or(1.0, |root| Hull::new(&root.bounds, [0, 0]).scale());
+        let scale = binary.nodes.first().map_or(1.0, |root| root.hull().scale());
+        // All at once, because they have to be waited for.
+        let numbers = binary.references.par_iter().with_min_len(ALONE);
+        let triangles: Vec<Triangle> = numbers.map(|&number| triangle(number)).collect();
+        let repeats = Repeats::of(&triangles);
         let mut parts = vec![Part::default(); binary.nodes.len()];
         if let Some((root, below)) = parts.split_first_mut() {
-            let price = price.max(0.0) * weight(&binary.nodes[0], scale) / binary.references.len() as f32;
-            let planner = Planner { binary, triangle, scale, price };
-            *root = planner.part(&binary.nodes[0], below, 1).0;
+            let whole = &binary.nodes[0];
+            let price = price.max(0.0) * whole.hull().weight(scale) / binary.references.len() as f32;
+            let planner = Planner { binary, triangles: &triangles, repeats: &repeats, scale, price };
+            *root = planner.part(whole, below, 1).0;
         }
-        Self { binary, parts, scale }
+        Self { binary, triangles, repeats, parts, scale }
     }
 
     /// How likely a ray meets a binary node.
     fn weight(&self, node: usize) -> f32 {
-        weight(&self.binary.nodes[node], self.scale)
+        self.binary.nodes[node].hull().weight(self.scale)
     }
 
     /// Of a binary node that becomes a block the number of its corners, else 0.
@@ -100,12 +109,12 @@ impl<'b> Plan<'b> {
             while places > 1 && places < WIDTH && costs[places - 1] == costs[places - 2] {
                 places -= 1;
             }
-            next = if places == 1 || self.binary.nodes[node].count > 0 {
+            next = if places == 1 || self.binary.nodes[node].count() > 0 {
                 // No more than the places that were given away.
                 let _ = children.push(node);
                 open.pop()
             } else {
-                let left = self.binary.nodes[node].first as usize;
+                let left = self.binary.nodes[node].first();
                 let of_left = divided([&self.parts[left].costs, &self.parts[left + 1].costs], places).1;
                 let _ = open.push((left + 1, places - of_left));
                 Some((left, of_left))
@@ -116,37 +125,22 @@ impl<'b> Plan<'b> {
         children
     }
 
-    /// The triangles of a block.
-    pub(super) fn triangles(&self, node: usize) -> heapless::Vec<u32, WIDTH> {
-        let mut triangles = heapless::Vec::<u32, WIDTH>::new();
-        let mut open = heapless::Vec::<usize, WIDTH>::new();
-        let mut next = Some(node);
-        while let Some(index) = next {
-            let node = &self.binary.nodes[index];
-            let (first, count) = (node.first as usize, node.count as usize);
-            next = if count == 0 {
-                let _ = open.push(first + 1);
-                Some(first)
-            } else {
-                let _ = triangles.extend_from_slice(&self.binary.references[first..first + count]);
-                open.pop()
-            };
+    /// The references below a node: depth first, so that they stand together.
+    pub(super) fn range(&self, mut node: usize) -> Range<usize> {
+        let count = self.references(node) as usize;
+        while self.binary.nodes[node].count() == 0 {
+            node = self.binary.nodes[node].first();
         }
-        triangles.sort_unstable();
-        // A triangle that was split may be back in one piece.
-        let mut kept = heapless::Vec::new();
-        for triangle in triangles {
-            if kept.last() != Some(&triangle) {
-                let _ = kept.push(triangle);
-            }
-        }
-        kept
+        let first = self.binary.nodes[node].first();
+        first..first + count
     }
-}
 
-/// How likely a ray meets a node.
-fn weight(node: &BinaryNode, scale: f32) -> f32 {
-    Hull::new(&node.bounds, [0, 0]).weight(scale)
+    /// Those of a block that become triangles of it, by their places: one that was cut may be back in one piece.
+    pub(super) fn numbers(&self, block: Range<usize>) -> impl Iterator<Item = (usize, u32)> {
+        let numbers = &self.binary.references[block];
+        let places = numbers.iter().copied().enumerate();
+        places.filter(|&(place, number)| !numbers[..place].contains(&number))
+    }
 }
 
 /// The least cost of two parts in this many places, at least two, and how many the first one gets.
@@ -155,16 +149,24 @@ fn divided([left, right]: [&[f32; WIDTH - 1]; 2], places: usize) -> (f32, usize)
     (1..places).map(split).reduce(|a, b| if b.0 < a.0 { b } else { a }).unwrap_or((f32::INFINITY, 1))
 }
 
+/// The least cost of two parts in this many places, at least two.
+#[inline(always)]
+fn least([left, right]: [&[f32; WIDTH - 1]; 2], places: usize) -> f32 {
+    let costs = (1..places).map(|of_left| left[of_left - 1] + right[places - of_left - 1]);
+    costs.fold(f32::INFINITY, |a, b| if b < a { b } else { a })
+}
+
 /// What the threads share.
-struct Planner<'p, T> {
+struct Planner<'p> {
     binary: &'p Binary,
-    triangle: &'p T,
+    triangles: &'p [Triangle],
+    repeats: &'p Repeats,
     scale: f32,
     /// What a byte costs.
     price: f32,
 }
 
-impl<T: Fn(u32) -> Triangle + Sync> Planner<'_, T> {
+impl Planner<'_> {
     /// What a block costs.
     fn block_cost(&self, weight: f32, corners: usize, triangles: u32) -> f32 {
         weight * (BLOCK + TRIANGLE * triangles as f32)
@@ -177,55 +179,52 @@ impl<T: Fn(u32) -> Triangle + Sync> Planner<'_, T> {
         e.cross(f).length() * 0.5
     }
 
-    /// What is to be known of a node, and its corners if they have room in a block; `below` are the nodes below it, of which the
+    /// What is to be known of a node, and the first reference below it; `below` are the nodes below it, of which the
     /// first has the number `base`.
-    fn part(&self, node: &BinaryNode, below: &mut [Part], base: usize) -> (Part, Option<Corners>) {
-        let weight = weight(node, self.scale);
-        if node.count > 0 {
-            let references = &self.binary.references[node.first as usize..][..node.count as usize];
-            let mut surface = 0.0;
-            let triangles = references.iter().map(|&number| {
-                let triangle = (self.triangle)(number);
-                surface += self.surface(&triangle);
-                triangle
-            });
-            let corners = Corners::of(triangles);
-            let count = corners.map_or(0, |corners| corners.count());
-            let costs = [self.block_cost(weight, count, node.count); WIDTH - 1];
+    fn part(&self, node: &BinaryNode, below: &mut [Part], base: usize) -> (Part, usize) {
+        let weight = node.hull().weight(self.scale);
+        if node.count() > 0 {
+            let range = node.first()..node.first() + node.count();
+            let count = self.repeats.count(range.clone());
+            let costs = [self.block_cost(weight, count, node.count() as u32); WIDTH - 1];
+            let surface: f32 = self.triangles[range].iter().map(|triangle| self.surface(triangle)).sum();
             // Seen from all sides, a triangle's shadow is half its surface and a box's a quarter.
             let chance = (surface / weight).min(1.0);
-            return (Part { costs, chance, references: (count as u32) << Part::CORNERS | node.count }, corners);
+            return (
+                Part { costs, chance, references: (count as u32) << Part::CORNERS | node.count() as u32 },
+                node.first(),
+            );
         }
         let nodes = &self.binary.nodes[base..][..2];
         let (pair, below) = below.split_at_mut(2);
         // Depth first: what is below the left one comes before what is below the right one.
         let base = base + 2;
-        let border = if nodes[1].count > 0 { below.len() } else { nodes[1].first as usize - base };
+        let border = if nodes[1].count() > 0 { below.len() } else { nodes[1].first() - base };
         let together = below.len() > ALONE;
         let (of_left, of_right) = below.split_at_mut(border);
         let mut left = || self.part(&nodes[0], of_left, base);
         let mut right = || self.part(&nodes[1], of_right, base + border);
-        let ((left, corners), (right, others)) = if together { rayon::join(left, right) } else { (left(), right()) };
+        let ((left, first), (right, _)) = if together { rayon::join(left, right) } else { (left(), right()) };
         pair.copy_from_slice(&[left, right]);
         let references = left.references() + right.references();
-        let corners =
-            if references > MOST { None } else { corners.zip(others).and_then(|(all, others)| all.union(&others)) };
         let passes =
-            |node: &BinaryNode, part: &Part| 1.0 - (self::weight(node, self.scale) / weight).min(1.0) * part.chance;
+            |node: &BinaryNode, part: &Part| 1.0 - (node.hull().weight(self.scale) / weight).min(1.0) * part.chance;
         let chance = 1.0 - passes(&nodes[0], &left) * passes(&nodes[1], &right);
         let mut part = Part { costs: [0.0; WIDTH - 1], chance, references };
         let sides = [&left.costs, &right.costs];
-        part.costs[0] = weight * NODE + self.price * size_of::<Node>() as f32 + divided(sides, WIDTH).0;
-        if let Some(corners) = &corners {
-            let cost = self.block_cost(weight, corners.count(), references);
+        part.costs[0] = weight * NODE + self.price * size_of::<Node>() as f32 + least(sides, WIDTH);
+        let corners =
+            if references > MOST { usize::MAX } else { self.repeats.count(first..first + references as usize) };
+        if corners <= WIDTH {
+            let cost = self.block_cost(weight, corners, references);
             if cost <= part.costs[0] {
                 part.costs[0] = cost;
-                part.references |= (corners.count() as u32) << Part::CORNERS;
+                part.references |= (corners as u32) << Part::CORNERS;
             }
         }
         for places in 2..WIDTH {
-            part.costs[places - 1] = part.costs[places - 2].min(divided(sides, places).0);
+            part.costs[places - 1] = part.costs[places - 2].min(least(sides, places));
         }
-        (part, corners)
+        (part, first)
     }
 }

@@ -11,8 +11,6 @@ use crate::wide::{
 pub(super) struct Sketch {
     /// Parents before their children.
     pub nodes: Vec<Sketched>,
-    /// The triangles of the blocks, in the order in which nodes name them.
-    pub triangles: Vec<u32>,
     /// Words of all blocks.
     pub words: usize,
     /// Nodes below one another.
@@ -28,8 +26,6 @@ pub(super) struct Sketched {
     pub children: heapless::Vec<usize, WIDTH>,
     /// What they are, counted from the sketch's first node and word.
     pub named: [Child; WIDTH],
-    /// How many triangles each has, if it is a block.
-    pub counts: [u8; WIDTH],
 }
 
 /// A part that a sketch leaves out.
@@ -62,11 +58,11 @@ impl Sketch {
             }
             sketch.depth = sketch.depth.max(depth + 1);
             let children = if plan.corners(root) > 0 { heapless::Vec::from_array([root]) } else { plan.children(root) };
-            let mut node = Sketched { children, named: [Child::node(0); WIDTH], counts: [0; WIDTH] };
+            let mut node = Sketched { children, named: [Child::node(0); WIDTH] };
             // Where a walk goes first, that comes first, too.
             for (place, &child) in node.children.iter().enumerate().rev() {
                 if plan.corners(child) > 0 {
-                    (node.named[place], node.counts[place]) = sketch.block(plan, child);
+                    node.named[place] = sketch.block(plan, child);
                 }
             }
             let inner = node.children.iter().enumerate().filter(|&(_, &child)| plan.corners(child) == 0);
@@ -76,13 +72,11 @@ impl Sketch {
         sketch
     }
 
-    /// Adds a block, and how many triangles it has.
-    fn block(&mut self, plan: &Plan<'_>, node: usize) -> (Child, u8) {
-        let triangles = plan.triangles(node);
+    /// Adds a block.
+    fn block(&mut self, plan: &Plan<'_>, node: usize) -> Child {
         let corners = plan.corners(node);
         let block = Child::block(self.words, corners);
-        self.words += block::words(corners, triangles.len());
-        self.triangles.extend_from_slice(&triangles);
-        (block, triangles.len() as u8)
+        self.words += block::words(corners, plan.numbers(plan.range(node)).count());
+        block
     }
 }

@@ -1,10 +1,9 @@
+use glam::Vec3;
+
 use super::{plan::Plan, sketch::Sketch};
-use crate::{
-    geometry::Triangle,
-    wide::{
-        block,
-        node::{Child, Node, WIDTH},
-    },
+use crate::wide::{
+    block::{self, Lane},
+    node::{Child, Node, WIDTH},
 };
 
 /// The places of a part of the tree.
@@ -32,27 +31,40 @@ impl Places<'_> {
     }
 
     /// Writes nodes and blocks.
-    pub(super) fn write(self, plan: &Plan<'_>, sketch: &Sketch, triangle: &impl Fn(u32) -> Triangle) {
-        let (mut all, mut words) = (&sketch.triangles[..], self.words);
+    pub(super) fn write(self, plan: &Plan<'_>, sketch: &Sketch) {
+        let mut words = self.words;
         for (node, sketched) in self.nodes.iter_mut().zip(&sketch.nodes) {
             *node = Node::empty(Child::block(0, 1));
             for (place, &child) in sketched.children.iter().enumerate().rev() {
                 let named = sketched.named[place];
-                let bounds = &plan.binary.nodes[child].bounds;
+                let bounds = &plan.binary.nodes[child].hull().bounds();
                 if !named.is_block() {
                     node.set(place, bounds, Child::node(named.0 + self.first_node as u32));
                     continue;
                 }
                 let corners = named.corners();
                 node.set(place, bounds, Child::block(named.first() + self.first_word, corners));
-                let (numbers, rest) = all.split_at(usize::from(sketched.counts[place]));
-                let (block, behind) = words.split_at_mut(block::words(corners, numbers.len()));
-                let triangles: heapless::Vec<Triangle, WIDTH> =
-                    numbers.iter().map(|&number| triangle(number)).collect();
-                block::write(block, numbers, &triangles);
-                (all, words) = (rest, behind);
+                words = write_block(words, plan, child, corners);
             }
             node.order();
         }
     }
+}
+
+/// Writes the block of a binary node; what is left of the words.
+fn write_block<'w>(words: &'w mut [u32], plan: &Plan<'_>, node: usize, corners: usize) -> &'w mut [u32] {
+    let range = plan.range(node);
+    let places = plan.repeats.places(range.clone());
+    let mut different = [Vec3::ZERO; WIDTH];
+    let all = plan.triangles[range.clone()].iter().flat_map(|of| [of.a, of.b, of.c]);
+    for (&place, corner) in places.iter().zip(all) {
+        different[usize::from(place) % WIDTH] = corner;
+    }
+    let lanes: heapless::Vec<Lane, WIDTH> = plan
+        .numbers(range)
+        .map(|(triangle, number)| Lane { number, corners: [0, 1, 2].map(|corner| places[3 * triangle + corner]) })
+        .collect();
+    let (block, behind) = words.split_at_mut(block::words(corners, lanes.len()));
+    block::write(block, &different[..corners], &lanes);
+    behind
 }

@@ -17,6 +17,7 @@ use hitscan::{
     accel::{Accelerator, LatticeAccelerator},
     asset::Stored,
     glam::Vec3,
+    query::ItemBuffer,
     render::{Camera, Caster, Tile, Tiles},
 };
 use semihosting::println;
@@ -32,9 +33,17 @@ fn plain<S: Caster>(scene: &S, camera: &Camera, tile: Tile, hits: &mut [Option<H
     }
 }
 
-/// The same, begun together.
+/// The same of all pixels, at once.
 #[inline(never)]
-fn tiled<S: Caster>(scene: &S, camera: &Camera, tile: Tile, stride: usize, hits: &mut [Option<Hit>]) {
+fn tiled<S: Caster>(scene: &S, camera: &Camera, tile: Tile, hits: &mut ItemBuffer) {
+    if let Some(pencil) = camera.pencil(&tile, SIDE, SIDE) {
+        scene.closest_hits(&pencil, hits);
+    }
+}
+
+/// The first ones, begun together.
+#[inline(never)]
+fn begun<S: Caster>(scene: &S, camera: &Camera, tile: Tile, stride: usize, hits: &mut [Option<Hit>]) {
     let entries = camera.bundle(&tile, SIDE, SIDE).map(|bundle| scene.enter(&bundle));
     let Some(entries) = entries.filter(|entries| !entries.is_empty()) else { return hits.fill(None) };
     let pixels = (tile.y..tile.y + tile.height)
@@ -62,18 +71,18 @@ fn compare<S: Caster>(counter: &Counter, name: &str, scene: &S) -> bool {
     let camera = Camera::framing(&scene.bounds(), Vec3::new(0.2, 0.3, -1.0), Vec3::Y);
     let mut answers = [Answer::NONE; 2];
     let (mut alone, mut together, mut coarse, mut stack) = (0, 0, 0, 0);
-    let mut hits = [None; 64];
+    let (mut hits, mut items) = ([None; 64], ItemBuffer::new());
     for tile in Tiles::new(SIDE, SIDE, 8, 8) {
         alone += counter.instructions(|| plain(scene, &camera, tile, &mut hits));
         hits.into_iter().for_each(|hit| answers[0].add(hit));
-        together += counter.instructions(|| tiled(scene, &camera, tile, 1, &mut hits));
-        hits.into_iter().for_each(|hit| answers[1].add(hit));
+        together += counter.instructions(|| tiled(scene, &camera, tile, &mut items));
+        (0..64).for_each(|i| answers[1].add(items.get(i % 8, i / 8)));
         if tile.x == tile.y {
-            stack = stack.max(stack_of(&mut || tiled(scene, &camera, tile, 1, &mut hits)));
+            stack = stack.max(stack_of(&mut || tiled(scene, &camera, tile, &mut items)));
         }
     }
     for tile in Tiles::new(SIDE, SIDE, 64, 64) {
-        coarse += counter.instructions(|| tiled(scene, &camera, tile, 8, &mut hits));
+        coarse += counter.instructions(|| begun(scene, &camera, tile, 8, &mut hits));
     }
     let filled = answers[0].hits * 100 / answers[0].rays;
     let share = (coarse * 1000 / together) as f32 / 10.0;

@@ -9,15 +9,15 @@ use super::{Tile, Tiles};
 /// what is there.
 ///
 /// ```
-/// use hitscan::render::Order;
-/// let blocks: Vec<_> = Order::new(16, 8).collect();
+/// use hitscan::render::Interlaced;
+/// let blocks: Vec<_> = Interlaced::new(16, 8).collect();
 /// assert_eq!(blocks.len(), 16 * 8);
 /// // After the first pass all of the picture is there, in blocks of 8 x 8.
 /// assert!(blocks[..2].iter().all(|block| block.area() == 64));
 /// assert_eq!((blocks[2].x, blocks[2].y, blocks[2].area()), (4, 4, 16));
 /// ```
 #[derive(Clone, Debug)]
-pub struct Order {
+pub struct Interlaced {
     width: u32,
     height: u32,
     pass: u32,
@@ -38,20 +38,21 @@ const SAMPLES: u32 = 8;
 /// One with a pixel of each 8 x 8, and two for each halving of the distance.
 const PASSES: u32 = 7;
 
-impl Order {
-    /// Of a picture of this size.
+impl Interlaced {
+    /// Those of a picture of this size.
     #[must_use]
     pub fn new(width: u32, height: u32) -> Self {
-        let mut order = Self {
-            width,
-            height,
-            pass: 0,
-            tiles: Tiles::new(0, 0, 1, 1),
-            tile: Tile { x: 0, y: 0, width: 0, height: 0 },
-            next: (0, 0),
-        };
-        order.begin();
-        order
+        Self::from_pass(width, height, 0)
+    }
+
+    /// Those of a pass and of what follows.
+    fn from_pass(width: u32, height: u32, pass: u32) -> Self {
+        let nowhere = Tile { x: 0, y: 0, width: 0, height: 0 };
+        let begun = Self { width, height, pass, tiles: Tiles::new(0, 0, 1, 1), tile: nowhere, next: (0, 0) };
+        let (stride, half) = begun.strides();
+        // As many samples in a tile on the diagonals as at first, half as many beside them.
+        let side = SAMPLES * if begun.is_diagonal() { stride } else { half };
+        Self { tiles: Tiles::new(width, height, side, side), ..begun }
     }
 
     /// The tile of the block that came last.
@@ -75,16 +76,6 @@ impl Order {
                 (stride, stride / 2)
             }
         }
-    }
-
-    /// Lists the tiles of the pass.
-    fn begin(&mut self) {
-        let (stride, half) = self.strides();
-        // As many samples in a tile on the diagonals as at first, half as many beside them.
-        let side = SAMPLES * if self.is_diagonal() { stride } else { half };
-        self.tiles = Tiles::new(self.width, self.height, side, side);
-        self.tile = Tile { x: 0, y: 0, width: 0, height: 0 };
-        self.next = (0, 0);
     }
 
     /// Whether the pass is of pixels in the middle of four that were there.
@@ -119,7 +110,7 @@ impl Order {
     }
 }
 
-impl Iterator for Order {
+impl Iterator for Interlaced {
     type Item = Tile;
 
     fn next(&mut self) -> Option<Tile> {
@@ -132,8 +123,7 @@ impl Iterator for Order {
                 let dy = if self.is_diagonal() { self.strides().1 } else { 0 };
                 self.next = (self.first(dy), dy);
             } else {
-                self.pass += 1;
-                self.begin();
+                *self = Self::from_pass(self.width, self.height, self.pass + 1);
             }
         }
         None
@@ -153,16 +143,16 @@ mod tests {
 
     #[test]
     fn passes_are_those_of_the_matrix() {
-        let mut order = Order::new(64, 64);
+        let mut pixels = Interlaced::new(64, 64);
         let mut counts = [0; PASSES as usize];
-        while let Some(block) = order.next() {
+        while let Some(block) = pixels.next() {
             let threshold = threshold(block.x % 8, block.y % 8);
             let pass = if threshold == 0 { 0 } else { threshold.ilog2() + 1 };
-            assert_eq!(order.pass(), pass, "{block:?}");
+            assert_eq!(pixels.pass(), pass, "{block:?}");
             counts[pass as usize] += 1;
         }
         assert_eq!(counts, [64, 64, 128, 256, 512, 1024, 2048]);
-        assert_eq!((order.next(), order.pass()), (None, PASSES));
+        assert_eq!((pixels.next(), pixels.pass()), (None, PASSES));
     }
 
     #[test]
@@ -170,20 +160,20 @@ mod tests {
         for (width, height) in [(1, 1), (7, 33), (8, 8), (65, 40), (0, 5), (5, 0), (33, 1), (130, 70)] {
             let mut seen = vec![0_u8; (width * height) as usize];
             let mut shown = vec![(u32::MAX, u32::MAX); seen.len()];
-            let mut order = Order::new(width, height);
+            let mut pixels = Interlaced::new(width, height);
             let mut pass = 0;
-            while let Some(block) = order.next() {
+            while let Some(block) = pixels.next() {
                 assert!(block.x < width && block.y < height && block.area() > 0);
-                let tile = order.tile();
+                let tile = pixels.tile();
                 assert!(block.x >= tile.x && block.x + block.width <= tile.x + tile.width);
                 assert!(block.y >= tile.y && block.y + block.height <= tile.y + tile.height);
-                if order.pass() > pass {
-                    pass = order.pass();
+                if pixels.pass() > pass {
+                    pass = pixels.pass();
                     // All is covered from the first pass on, and by something no farther away than its blocks are large.
                     let far = COARSEST >> ((pass - 1) / 2);
-                    let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+                    let all = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
                     let near = |((x, y), (a, b)): ((u32, u32), &(u32, u32))| x - a < far && y - b < far;
-                    assert!(pixels.zip(&shown).all(near), "{width} x {height}, pass {pass}");
+                    assert!(all.zip(&shown).all(near), "{width} x {height}, pass {pass}");
                 }
                 seen[(block.y * width + block.x) as usize] += 1;
                 block.pixels().for_each(|(x, y)| shown[(y * width + x) as usize] = (block.x, block.y));
@@ -197,7 +187,7 @@ mod tests {
     #[test]
     fn pictures_of_any_size_are_begun() {
         for size in [(u32::MAX, u32::MAX), (u32::MAX, 1), (1, u32::MAX)] {
-            assert_eq!(Order::new(size.0, size.1).take(100_000).count(), 100_000);
+            assert_eq!(Interlaced::new(size.0, size.1).take(100_000).count(), 100_000);
         }
     }
 }

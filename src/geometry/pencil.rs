@@ -1,0 +1,207 @@
+use glam::Vec3;
+
+use super::{Bundle, Ray, Triangle};
+use crate::math::{greatest, least};
+
+/// Rays from one point through the middles of at most 8 x 8 pixels: what a tile of a picture with perspective is made of.
+///
+/// A [`Camera`](crate::render::Camera) makes them. Together they tell cheaply which of them may hit a triangle.
+#[derive(Clone, Copy, Debug)]
+pub struct Pencil {
+    origin: Vec3,
+    screen: Screen,
+    /// The first pixel.
+    first: [u32; 2],
+    columns: u32,
+    rows: u32,
+    /// The direction of the first ray; those of the others lie [within](Self::error) some steps of it.
+    corner: Vec3,
+    /// What the direction changes by from a column to the next.
+    right: Vec3,
+    /// And from a row to the next.
+    down: Vec3,
+    /// More than the magnitudes of all that any coordinate of a direction is summed from.
+    size: f32,
+}
+
+/// Where the points of a picture are, as seen from an eye.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Screen {
+    /// The middle.
+    pub(crate) forward: Vec3,
+    /// From there to the upper edge.
+    pub(crate) up: Vec3,
+    /// As far to the right.
+    pub(crate) right: Vec3,
+    /// Half of the picture's width and height, in pixels.
+    pub(crate) half: [f32; 2],
+}
+
+impl Screen {
+    /// From the middle to the point `(x, y)`, in pixels from the upper left corner.
+    #[inline]
+    pub(crate) fn across(&self, x: f32, y: f32) -> Vec3 {
+        let [middle, half] = self.half;
+        let (u, v) = ((x - middle) / half, 1.0 - y / half);
+        self.right * u + self.up * v
+    }
+
+    fn through(&self, [x, y]: [u32; 2]) -> Vec3 {
+        self.forward + self.across(x as f32 + 0.5, y as f32 + 0.5)
+    }
+}
+
+/// 2^-15: what the edge functions of all rays may be off by, of the products of lengths that they are made of.
+const ERROR: f32 = 1.0 / 32_768.0;
+
+/// Beyond this, products of three lengths may leave the range of `f32`.
+const LARGE: f32 = 1.0e24;
+
+/// What the division by a step, which may itself be less, may lose.
+const SMALL: f32 = 16.0 * f32::MIN_POSITIVE;
+
+impl Pencil {
+    /// Columns and rows at most.
+    pub const SIDE: u32 = 8;
+
+    /// The rays from `origin` through `columns` x `rows` pixels; none if these are too many, or none.
+    pub(crate) fn new(origin: Vec3, screen: Screen, first: [u32; 2], [columns, rows]: [u32; 2]) -> Option<Self> {
+        let sides = 1..=Self::SIDE;
+        if !(sides.contains(&columns) && sides.contains(&rows)) {
+            return None;
+        }
+        let [middle, half] = screen.half;
+        let largest = |v: Vec3| greatest(greatest(v.x.abs(), v.y.abs()), v.z.abs());
+        let [x, y] = first.map(|first| (first.saturating_add(Self::SIDE) as f32) / half);
+        let size =
+            largest(screen.forward) + largest(screen.right) * (x + middle / half) + largest(screen.up) * (y + 2.0);
+        let (right, down) = (screen.right / half, screen.up / -half);
+        Some(Self { origin, screen, first, columns, rows, corner: screen.through(first), right, down, size })
+    }
+
+    /// How many rays there are in a row.
+    #[must_use]
+    pub const fn columns(&self) -> u32 {
+        self.columns
+    }
+
+    /// How many rows of rays there are.
+    #[must_use]
+    pub const fn rows(&self) -> u32 {
+        self.rows
+    }
+
+    /// The ray in a column and a row, as the camera makes it.
+    #[inline]
+    #[must_use]
+    pub fn ray(&self, column: u32, row: u32) -> Ray {
+        let [x, y] = self.first;
+        Ray::new(self.origin, self.screen.through([x.saturating_add(column), y.saturating_add(row)]))
+    }
+
+    /// All of the rays; none if they are to be looked at one by one.
+    #[must_use]
+    pub fn bundle(&self) -> Option<Bundle> {
+        let (last, bottom) = (self.columns - 1, self.rows - 1);
+        Bundle::around([(0, 0), (last, 0), (0, bottom), (last, bottom)].map(|(column, row)| self.ray(column, row)))
+    }
+
+    /// A bit per ray, eight for a row: those that there are.
+    pub(crate) const fn all(&self) -> u64 {
+        let row = (1 << self.columns) - 1;
+        let rows = u64::MAX >> (64 - Self::SIDE * self.rows);
+        (row * 0x0101_0101_0101_0101) & rows
+    }
+
+    /// A bit per ray, eight for a row: those that may hit a triangle; the others certainly do not.
+    ///
+    /// Along a row and from row to row the edge functions, d . (B x C) and so on, change by constant steps. Where they are
+    /// proven to have different signs there is no hit (Pineda, *A parallel algorithm for polygon rasterization*, 1988).
+    pub(crate) fn candidates(&self, triangle: &Triangle) -> u64 {
+        let &Triangle { a, b, c } = triangle;
+        let (ab, bc, ca) = (b - a, c - b, a - c);
+        let (a, b, c) = (a - self.origin, b - self.origin, c - self.origin);
+        let length = |v: Vec3| v.x.abs() + v.y.abs() + v.z.abs();
+        let edges = length(ab) + length(ca);
+        let area = (length(a) + edges) * edges;
+        let error = area * (self.size * ERROR) + SMALL;
+        if !(area < LARGE && self.size < LARGE) {
+            return self.all();
+        }
+        let normals = [b.cross(bc), c.cross(ca), a.cross(ab)];
+        let edges = Edges {
+            at: normals.map(|normal| normal.dot(self.corner)),
+            right: normals.map(|normal| normal.dot(self.right)),
+            down: normals.map(|normal| normal.dot(self.down)),
+            error,
+        };
+        // Their sum tells from which side the triangle is seen; rays nearly in its plane may be on both.
+        let [at, right, down] = [edges.at, edges.right, edges.down].map(|[u, v, w]| u + v + w);
+        let (right, down) = (right * LAST, down * LAST);
+        let lowest = at + least(right, 0.0) + least(down, 0.0);
+        let highest = at + greatest(right, 0.0) + greatest(down, 0.0);
+        let mut candidates = 0;
+        if !(highest < -4.0 * error) {
+            candidates |= edges.inside();
+        }
+        if !(lowest > 4.0 * error) {
+            candidates |= edges.turned().inside();
+        }
+        candidates & self.all()
+    }
+}
+
+/// Steps from the first row or column to the last.
+const LAST: f32 = (Pencil::SIDE - 1) as f32;
+
+/// Three edge functions over the rays of a pencil.
+struct Edges {
+    at: [f32; 3],
+    right: [f32; 3],
+    down: [f32; 3],
+    error: f32,
+}
+
+impl Edges {
+    /// The triangle seen from the other side.
+    fn turned(&self) -> Self {
+        let [at, right, down] = [self.at, self.right, self.down].map(|edges| edges.map(|edge| -edge));
+        Self { at, right, down, ..*self }
+    }
+
+    /// A bit per ray: those for which no edge function is proven to be negative. Written so that NaN proves nothing.
+    #[inline(never)]
+    fn inside(&self) -> u64 {
+        let &Self { at: [u, v, w], right: [ux, vx, wx], down: [uy, vy, wy], error } = self;
+        let edges = [(u + error, ux, uy), (v + error, vx, vy), (w + error, wx, wy)];
+        // The greatest value in the first row, and that in all of them.
+        let tops = edges.map(|(at, right, down)| (at + greatest(right * LAST, 0.0), down));
+        if tops.iter().any(|&(top, down)| top + greatest(down * LAST, 0.0) < 0.0) {
+            return 0;
+        }
+        let edges = edges.map(|(at, right, down)| (at, down, -1.0 / right));
+        let mut rays = 0;
+        for row in 0..Pencil::SIDE {
+            let y = row as f32;
+            if tops.iter().any(|&(top, down)| top + y * down < 0.0) {
+                continue;
+            }
+            // From the last column where a rising one becomes positive to the first where a falling one becomes negative.
+            let (mut first, mut last) = (0.0, LAST);
+            for (at, down, step) in edges {
+                let crossing = (at + y * down) * step;
+                if step.is_sign_negative() {
+                    first = greatest(crossing, first);
+                } else {
+                    last = least(crossing, last);
+                }
+            }
+            // Quotients have an error, too.
+            let (first, last) = (first + 0.99, last + 0.01);
+            if !(last < 0.0) && first as u32 <= last as u32 {
+                rays |= u64::from((2_u32 << last as u32) - (1 << first as u32)) << (Pencil::SIDE * row);
+            }
+        }
+        rays
+    }
+}
