@@ -250,12 +250,10 @@ impl<A: Accelerator, P: Primitives> Scene<A, P> {
 
     /// Offers the hits of the ray, leaf by leaf, until `collector` has enough. All queries that need not pause are this.
     pub(crate) fn search<C: Collector>(&self, ray: &PreparedRay, collector: &mut C) {
-        let mut traversal = self.accelerator.traverse(ray);
-        while let Some(leaf) = traversal.next_leaf(ray, collector.until().t) {
-            if self.offer(leaf, ray, collector) {
-                return;
-            }
-        }
+        self.accelerator.visit(ray, collector.until().t, |leaf| {
+            let is_enough = self.offer(leaf, ray, collector);
+            (!is_enough).then_some(collector.until().t)
+        });
     }
 
     /// Offers the hits with the primitives of a leaf; whether `collector` has enough.

@@ -109,7 +109,7 @@ fn plan() -> impl Strategy<Value = Plan> {
             match kind {
                 0 => Plan::Grid(grid::Options {
                     density: cost,
-                    form: [grid::Form::Full, grid::Form::Bitmask][usize::from(how % 2)],
+                    form: grid::Form::ALL[usize::from(how % 3)],
                     clip,
                     bytes_per_primitive: bytes % 2000,
                     max_bytes,

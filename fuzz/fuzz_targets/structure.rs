@@ -44,7 +44,7 @@ impl Input {
         match self.kind % 6 {
             0 => Plan::Grid(grid::Options {
                 density: intersection_cost,
-                form: [grid::Form::Full, grid::Form::Bitmask][pick % 2],
+                form: grid::Form::ALL[pick % 3],
                 clip,
                 max_bytes,
                 ..grid::Options::fast()

@@ -73,6 +73,34 @@ pub trait Accelerator {
     fn traverse_from(&self, _entry: &Entry, ray: &PreparedRay) -> Self::Traversal {
         self.traverse(ray)
     }
+
+    /// Gives all leaves that the ray may enter at or before `t_max` to `visit`, as a cursor would, some perhaps repeatedly; what
+    /// `visit` returns is the new `t_max`, and nothing ends it.
+    #[inline(always)]
+    fn visit(
+        &self,
+        ray: &PreparedRay,
+        t_max: f32,
+        visit: impl FnMut(<Self::Traversal as Traversal>::Leaf) -> Option<f32>,
+    ) {
+        visit_by(self.traverse(ray), ray, t_max, visit);
+    }
+}
+
+/// See [`Accelerator::visit`].
+#[inline(always)]
+fn visit_by<T: Traversal>(
+    mut traversal: T,
+    ray: &PreparedRay,
+    mut t_max: f32,
+    mut visit: impl FnMut(T::Leaf) -> Option<f32>,
+) {
+    while let Some(leaf) = traversal.next_leaf(ray, t_max) {
+        match visit(leaf) {
+            Some(t) => t_max = t,
+            None => return,
+        }
+    }
 }
 
 /// The leaves of a structure.

@@ -53,7 +53,7 @@ pub fn random(random: &mut Random, kind: usize) -> Plan {
     match kind {
         0 => Plan::Grid(grid::Options {
             density: random.pick(&[0.3, 2.0, 8.0, 8.0, 50.0]),
-            form: random.pick(&[grid::Form::Full, grid::Form::Bitmask]),
+            form: random.pick(&grid::Form::ALL),
             clip,
             bytes_per_primitive: random.pick(&[30, 200, 200]),
             max_bytes,

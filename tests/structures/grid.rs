@@ -16,7 +16,7 @@ use hitscan::{
 fn options(random: &mut Random) -> Options {
     Options {
         density: random.pick(&[0.3, 2.0, 8.0, 8.0, 50.0]),
-        form: random.pick(&[Form::Full, Form::Bitmask]),
+        form: random.pick(&Form::ALL),
         clip: !random.one_in(4),
         bytes_per_primitive: random.pick(&[30, 200, 200]),
         max_bytes: random.pick(&[None, None, None, Some(900)]),
@@ -121,9 +121,7 @@ fn series(count: usize) -> Triangles {
 fn all_options() -> impl Iterator<Item = Options> {
     let base = [Options::small(), Options::balanced(), Options::fast(), Options::quick()];
     base.into_iter().flat_map(|base| {
-        [Form::Full, Form::Bitmask]
-            .into_iter()
-            .flat_map(move |form| [true, false].map(|clip| Options { form, clip, ..base }))
+        Form::ALL.into_iter().flat_map(move |form| [true, false].map(|clip| Options { form, clip, ..base }))
     })
 }
 
@@ -153,7 +151,7 @@ fn bytes_and_memory_are_bounded_whatever_the_primitives() {
 fn grids_fit_into_their_bytes() {
     for (vertices, triangles) in [separate(vec![]), random(1, 1.0), random(40, 0.3), identical(15), hair(60)] {
         let mesh = Mesh::new(&vertices, &triangles[..]).unwrap();
-        for form in [Form::Full, Form::Bitmask] {
+        for form in Form::ALL {
             let base = Options { form, ..Options::fast() };
             let mut memory = vec![0; Grid::words(triangles.len(), &base)];
             let most = build(&mesh, &mut memory, &base).unwrap().as_words().len() * 4;
@@ -216,7 +214,7 @@ fn exercise(words: &[u32], primitives: &impl Primitives) -> Result<(), Reason> {
 #[test]
 fn damaged_words_are_refused_or_harmless() {
     let (mut refused, mut harmless) = (0, 0);
-    for form in [Form::Full, Form::Bitmask] {
+    for form in Form::ALL {
         let (vertices, triangles) = random(9, 1.0);
         let mesh = Mesh::new(&vertices, &triangles[..]).unwrap();
         let mut memory = vec![0; 2000];
@@ -245,7 +243,7 @@ fn damaged_words_are_refused_or_harmless() {
 fn structured_lies_are_refused() {
     let (vertices, triangles) = random(30, 0.5);
     let mesh = Mesh::new(&vertices, &triangles[..]).unwrap();
-    for form in [Form::Full, Form::Bitmask] {
+    for form in Form::ALL {
         let mut memory = vec![0; 9000];
         let grid = build(&mesh, &mut memory, &Options { form, ..Options::fast() }).unwrap();
         let [nx, ny, nz] = grid.resolution();
@@ -263,7 +261,7 @@ fn structured_lies_are_refused() {
         assert!(reason(&|words| words[0] = 1 << 17).is_err(), "wide references");
         assert!(reason(&|words| words[1] = references - 1).is_err());
         assert!(reason(&|words| words[2] += 1).is_err());
-        assert_eq!(reason(&|words| words[3] = 2), Err(Reason::Header));
+        assert_eq!(reason(&|words| words[3] = 3), Err(Reason::Header));
         assert!(reason(&|words| words[3] ^= 1).is_err());
         assert_eq!(reason(&|words| words[4] = 0), Err(Reason::Header));
         assert_eq!(reason(&|words| words[5] = u32::MAX), Err(Reason::Header));
@@ -369,7 +367,12 @@ fn walks_are_short_and_the_mailbox_makes_them_shorter() {
         let bytes = grid.as_words().len() as f32 * 4.0 / triangles.len() as f32;
         let cells = nx * ny * nz;
         assert!(cells as f32 > triangles.len() as f32 * options.density * 0.7, "{cells}");
-        assert!(bytes < options.density * if options.form == Form::Full { 3.5 } else { 2.0 } + 9.0, "{bytes}");
+        let per_cell = match options.form {
+            Form::Full => 3.5,
+            Form::Octants => 5.5,
+            Form::Bitmask => 2.0,
+        };
+        assert!(bytes < options.density * per_cell + 9.0, "{bytes}");
         let mut random = Random::new(4);
         let (mut visits, mut tests, mut fewer) = (0, 0, 0);
         for _ in 0..1000 {

@@ -37,7 +37,7 @@ fn all_plans() -> impl Iterator<Item = Plan> {
     let grids = [grid::Options::small(), grid::Options::fast(), grid::Options::quick(), grid::Options::fast().fit(400)];
     let crowded = grid::Options { density: 90.0, bytes_per_primitive: 200, ..grid::Options::fast() };
     let grids = grids.into_iter().chain([crowded]).flat_map(move |base| {
-        [grid::Form::Full, grid::Form::Bitmask]
+        grid::Form::ALL
             .into_iter()
             .flat_map(move |form| clips.map(|clip| Plan::Grid(grid::Options { form, clip, ..base })))
     });

@@ -3,7 +3,7 @@
 use std::{error::Error, fs, path::Path};
 
 use hitscan::{
-    KdTree, Mesh, Scene,
+    Mesh, Primitives, Scene,
     accel::{List, Plan, Structure},
     bake::{self, Baker},
     bvh, dualsplit, grid, kdtree, octree,
@@ -71,15 +71,21 @@ pub fn contest(out: &Path, small: bool) -> Result<String, Box<dyn Error>> {
             code += &contestant(out, (size, name), (corners.len(), words.len() * 4), asset, answer)?;
         }
     }
-    code += "];\n\n/// Triangles that stand where the leaves of a kD-tree want them, where there is room.\npub static SOUPS: &[Contestant] = &[\n";
+    code += "];\n\n/// Triangles with their corners, where there is room.\npub static SOUPS: &[Contestant] = &[\n";
     for (size, (along, around)) in knots.into_iter().take(if small { 0 } else { 2 }) {
         let (vertices, triangles) = knot::mesh(along, around);
         let mesh = Mesh::new(&vertices, triangles.as_slice())?;
         let answer = camera_answer(&Scene::new(List::new(&mesh)?, &mesh)?);
-        let words = bake::build(&mesh, &Plan::KdTree(kdtree::Options::fast()))?;
-        let (words, order) = bake::gathered(&Structure::KdTree(KdTree::open(&words)?)).ok_or("a tree has an order")?;
-        let asset = Baker::new().soup(&mesh, &order).structure(KdTree::open(&words)?).finish();
-        code += &contestant(out, (size, "kdtree-soup fast"), (triangles.len(), words.len() * 4), asset, answer)?;
+        let order: Vec<u32> = (0..mesh.len()).collect();
+        for (name, plan) in [
+            ("kdtree-soup fast", Plan::KdTree(kdtree::Options::fast())),
+            ("grid-soup fast", Plan::Grid(grid::Options::fast())),
+        ] {
+            let words = bake::build(&mesh, &plan)?;
+            let structure = Structure::open(plan.kind().ok_or("every plan has a kind")?, &words)?;
+            let asset = Baker::new().soup(&mesh, &order).structure(structure).finish();
+            code += &contestant(out, (size, name), (triangles.len(), words.len() * 4), asset, answer)?;
+        }
     }
     Ok(code + "];\n")
 }

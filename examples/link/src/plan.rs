@@ -25,7 +25,7 @@ fn one_of<O: Copy + Default>(presets: &[O]) -> O {
 fn grid() -> grid::Options {
     use grid::{Form, Options};
     let preset = one_of(&[Options::small(), Options::balanced(), Options::fast().fit(word() as usize)]);
-    let form = if word() == 0 { Form::Full } else { Form::Bitmask };
+    let form = Form::ALL.get(word() as usize).copied().unwrap_or(Form::Bitmask);
     Options { form, density: float(), clip: word() == 0, bytes_per_primitive: word(), ..preset }
 }
 

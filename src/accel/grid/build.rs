@@ -8,7 +8,7 @@
 
 use super::{
     HEADER_WORDS, MAX_COUNT,
-    cells::{block_words, narrow_offsets, narrow_references, number_words, reference_words},
+    cells::{OFFSET, block_words, narrow_offsets, narrow_references, number_words, reference_words},
     cover::Frame,
     open::Header,
     options::{Form, Options},
@@ -32,18 +32,20 @@ pub(super) const fn words(primitives: usize, options: &Options) -> usize {
         usize::MAX => usize::MAX,
         bytes => bytes.div_ceil(4),
     };
-    let narrow = narrow_offsets(most_references(primitives, options.bytes(primitives)));
+    let narrow = narrow_offsets(options.form, most_references(options.form, primitives, options.bytes(primitives)));
     let scratch = match options.form {
         // The counts become the offsets.
         Form::Full if narrow => 0,
+        Form::Octants => 0,
         _ => number_words(cells + 1, narrow),
     };
     body.saturating_add(scratch)
 }
 
 /// How many references certainly do not fit if there are more: a number takes two bytes or four, its octants take one.
-const fn most_references(primitives: usize, bytes: usize) -> usize {
-    bytes / if narrow_references(primitives) { 3 } else { 5 }
+const fn most_references(form: Form, primitives: usize, bytes: usize) -> usize {
+    let most = bytes / if narrow_references(primitives) { 3 } else { 5 };
+    if matches!(form, Form::Octants) && most > OFFSET as usize { OFFSET as usize } else { most }
 }
 
 /// Writes a grid over `primitives` to the front of `words`; how many it took.
@@ -53,8 +55,9 @@ pub(super) fn build<P: Primitives + ?Sized>(
     options: &Options,
 ) -> Result<usize, BuildError> {
     let count = primitives.len();
-    if count > MAX_COUNT {
-        return Err(BuildError::TooMany { limit: MAX_COUNT });
+    let limit = if options.form == Form::Octants { OFFSET } else { MAX_COUNT };
+    if count > limit {
+        return Err(BuildError::TooMany { limit });
     }
     let allowed = options.bytes(count as usize);
     let at_least = options.least_bytes(count as usize);
@@ -64,8 +67,8 @@ pub(super) fn build<P: Primitives + ?Sized>(
     let bounds = bounds_of(primitives).map_err(|primitive| BuildError::Bounds { primitive })?;
     let cells = options.cells(count as usize);
     let frame = Frame::new(&bounds, resolution(&bounds, cells));
-    let most = most_references(count as usize, allowed);
-    let narrow = narrow_offsets(most);
+    let most = most_references(options.form, count as usize, allowed);
+    let narrow = narrow_offsets(options.form, most);
     let mut builder = Builder { primitives, options, allowed, most, narrow, bounds, words, frame, references: 0 };
     // Without cuts to be made, counting is as quick as an estimate.
     let hopeless = options.clip && !builder.estimate(cells, 2);
@@ -209,11 +212,13 @@ impl<P: Primitives + ?Sized> Builder<'_, '_, P> {
     /// Writes the blocks, brings the offsets into their final form and the references behind them; how many offsets there
     /// are before the last, and the length of all.
     fn pack(&mut self) -> (u32, usize) {
-        let (counts, narrow) = (self.narrow, narrow_offsets(self.references));
+        let (counts, narrow) = (self.narrow, narrow_offsets(self.options.form, self.references));
         let (table, cells) = (self.table(), self.frame.cells());
         let (front, body) = self.words.split_at_mut_checked(table).unwrap_or_default();
         let (_, blocks) = front.split_at_mut_checked(HEADER_WORDS).unwrap_or_default();
         let mut entries = 0;
+        let numbers = number_words(self.references, narrow_references(self.primitives.len() as usize));
+        let numbers = number_words(cells + 1, counts) + numbers;
         // An entry never stands behind the cell that it is of, so that no offset is overwritten before it is read.
         let mut next = get(body, 0, counts);
         for cell in 0..cells {
@@ -231,7 +236,11 @@ impl<P: Primitives + ?Sized> Builder<'_, '_, P> {
                     *bits |= 1 << (cell % 32);
                 }
             }
-            set(body, entries, begin, narrow);
+            let octants = match self.options.form {
+                Form::Octants => (begin..next).fold(0, |all, index| all | octants(body, numbers, index)),
+                _ => 0,
+            };
+            set(body, entries, octants << 24 | begin, narrow);
             entries += 1;
         }
         set(body, entries, next, narrow);
@@ -248,6 +257,11 @@ impl<P: Primitives + ?Sized> Builder<'_, '_, P> {
         }
         (entries as u32, table + to + references)
     }
+}
+
+/// The octants of a reference, where those of the first stand in the word `first`.
+fn octants(words: &[u32], first: usize, index: u32) -> u32 {
+    get(words, first + index as usize / 4, false) >> (index % 4 * 8) & 0xff
 }
 
 /// A number; there are two in a word if they are `narrow`.

@@ -11,6 +11,8 @@ pub(super) struct Cells<'a> {
     pub(super) blocks: &'a [u32],
     /// Where the references of each cell, or of each occupied one, begin; and where the last ones end.
     pub(super) offsets: References<'a>,
+    /// The bits of an offset; above them may be a bit per octant in which there is something.
+    pub(super) mask: u32,
 }
 
 /// The number of a cell.
@@ -22,7 +24,7 @@ pub(super) const fn index([_, ny, nz]: [u32; 3], [x, y, z]: [u32; 3]) -> u32 {
 /// Words of blocks of the bitmask over `cells`.
 pub(super) const fn block_words(form: Form, cells: usize) -> usize {
     match form {
-        Form::Full => 0,
+        Form::Full | Form::Octants => 0,
         Form::Bitmask => cells.div_ceil(32).saturating_mul(2),
     }
 }
@@ -33,9 +35,12 @@ pub(super) const fn number_words(count: usize, narrow: bool) -> usize {
 }
 
 /// Whether offsets up to `references` take two bytes.
-pub(super) const fn narrow_offsets(references: usize) -> bool {
-    references <= u16::MAX as usize
+pub(super) const fn narrow_offsets(form: Form, references: usize) -> bool {
+    references <= u16::MAX as usize && !matches!(form, Form::Octants)
 }
+
+/// The bits of an offset in a word with octants.
+pub(super) const OFFSET: u32 = 0x00ff_ffff;
 
 /// Whether numbers of primitives take two bytes.
 pub(super) const fn narrow_references(primitives: usize) -> bool {
@@ -45,10 +50,10 @@ pub(super) const fn narrow_references(primitives: usize) -> bool {
 /// Words of a whole grid.
 pub(super) const fn size(form: Form, primitives: usize, cells: usize, occupied: usize, references: usize) -> usize {
     let entries = match form {
-        Form::Full => cells,
+        Form::Full | Form::Octants => cells,
         Form::Bitmask => occupied,
     };
-    let offsets = number_words(entries.saturating_add(1), narrow_offsets(references));
+    let offsets = number_words(entries.saturating_add(1), narrow_offsets(form, references));
     (HEADER_WORDS + block_words(form, cells))
         .saturating_add(offsets)
         .saturating_add(reference_words(references, primitives))
@@ -61,20 +66,21 @@ pub(super) const fn reference_words(references: usize, primitives: usize) -> usi
 
 impl Cells<'_> {
     /// No cells.
-    pub(super) const NONE: Self = Self { blocks: &[], offsets: References::IDENTITY };
+    pub(super) const NONE: Self = Self { blocks: &[], offsets: References::IDENTITY, mask: u32::MAX };
 
     /// The first reference of a cell and how many there are, if any.
     #[inline(always)]
     pub(super) fn of(&self, cell: u32) -> Option<(u32, u32)> {
         let entry = if self.blocks.is_empty() { cell } else { self.rank(cell)? };
         let (first, end) = self.offsets.pair(entry)?;
-        let count = end.wrapping_sub(first);
+        let first = first & self.mask;
+        let count = (end & self.mask).wrapping_sub(first);
         if count == 0 { None } else { Some((first, count)) }
     }
 
     /// How many occupied cells there are before an occupied one.
     #[inline(always)]
-    fn rank(&self, cell: u32) -> Option<u32> {
+    pub(super) fn rank(&self, cell: u32) -> Option<u32> {
         let word = (cell >> 5) as usize * 2;
         let bits = *self.blocks.get(word)?;
         let bit = 1 << (cell & 31);

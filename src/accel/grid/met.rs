@@ -14,17 +14,35 @@ pub struct Met<'a> {
 /// What turns around the bytes of a word where its upper ones come first in memory.
 const FOURTH_FIRST: u32 = if cfg!(target_endian = "big") { 3 } else { 0 };
 
+/// In which octants of its cell a reference is.
+#[inline(always)]
+pub(super) fn octants_of(octants: &[u8], reference: u32) -> Option<u32> {
+    octants.get((reference ^ FOURTH_FIRST) as usize).map(|&octants| octants.into())
+}
+
 impl<'a> Met<'a> {
-    /// Those of `count` references from the one at `first` that share a bit with `on_the_way`, if there are any.
+    /// Those of the references from `first` up to `end` that share a bit with `on_the_way`.
+    #[inline(always)]
+    pub(super) const fn new(
+        references: References<'a>,
+        octants: &'a [u8],
+        first: u32,
+        end: u32,
+        on_the_way: u32,
+    ) -> Self {
+        Self { next: first, end, references, octants, on_the_way }
+    }
+
+    /// Those of the references from `first` up to `end` that share a bit with `on_the_way`, if there are any.
     #[inline(always)]
     pub(super) fn of(
         references: References<'a>,
         octants: &'a [u8],
         first: u32,
-        count: u32,
+        end: u32,
         on_the_way: u32,
     ) -> Option<Self> {
-        let mut met = Self { next: first, end: first.saturating_add(count), references, octants, on_the_way };
+        let mut met = Self::new(references, octants, first, end, on_the_way);
         met.next = met.ahead()?;
         Some(met)
     }
@@ -34,7 +52,7 @@ impl<'a> Met<'a> {
     fn ahead(&self) -> Option<u32> {
         let mut next = self.next;
         while next < self.end {
-            if u32::from(*self.octants.get((next ^ FOURTH_FIRST) as usize)?) & self.on_the_way != 0 {
+            if octants_of(self.octants, next)? & self.on_the_way != 0 {
                 return Some(next);
             }
             next += 1;

@@ -6,6 +6,7 @@
 
 mod build;
 mod cells;
+mod course;
 mod cover;
 mod line;
 mod met;
@@ -13,13 +14,14 @@ mod open;
 mod options;
 mod order;
 mod resolution;
+mod sweep;
 mod traverse;
 
 pub use met::Met;
 pub use options::{Form, Options};
 pub use traverse::GridTraversal;
 
-use self::cells::Cells;
+use self::{cells::Cells, course::Course};
 use super::{Accelerator, Cell, Hierarchy, Inside, Leaf, leaf::References};
 use crate::{
     arena::Arena,
@@ -63,6 +65,7 @@ pub struct Grid<'a> {
     resolution: [u32; 3],
     bounds: Aabb,
     lattice: Lattice,
+    course: Course,
 }
 
 impl<'a> Grid<'a> {
@@ -75,7 +78,7 @@ impl<'a> Grid<'a> {
     ///
     /// [`BuildError::Full`] if the arena is too small, [`BuildError::Bounds`] if a primitive has no valid bounds,
     /// [`BuildError::Budget`] if not even a single cell fits into [`Options::max_bytes`], [`BuildError::TooMany`] above
-    /// 2^28 primitives. The arena is then as it was.
+    /// 2^28 primitives, or 2^24 with [`Form::Octants`]. The arena is then as it was.
     pub fn build<P: Primitives + ?Sized>(
         primitives: &P,
         arena: &mut Arena<'a>,
@@ -104,6 +107,7 @@ impl<'a> Grid<'a> {
             resolution: [1; 3],
             bounds: Aabb::EMPTY,
             lattice: Lattice::over(&Aabb::EMPTY, [2; 3]),
+            course: Course::new(&Lattice::over(&Aabb::EMPTY, [2; 3]), &Aabb::EMPTY),
         }
     }
 
@@ -140,6 +144,11 @@ impl<'a> Accelerator for Grid<'a> {
     #[inline]
     fn traverse(&self, ray: &PreparedRay) -> GridTraversal<'a> {
         GridTraversal::new(self, ray)
+    }
+
+    #[inline(always)]
+    fn visit(&self, ray: &PreparedRay, t_max: f32, visit: impl FnMut(Met<'a>) -> Option<f32>) {
+        self.sweep(ray, t_max, visit);
     }
 }
 

@@ -4,8 +4,10 @@ use glam::Vec3;
 
 use super::{
     Grid, HEADER_WORDS, MAX_COUNT, MAX_RESOLUTION,
-    cells::{Cells, block_words, narrow_offsets, narrow_references, number_words, reference_words},
+    cells::{Cells, OFFSET, block_words, narrow_offsets, narrow_references, number_words, reference_words},
+    course::Course,
     cover::Frame,
+    met::octants_of,
     options::Form,
 };
 use crate::{
@@ -33,6 +35,7 @@ impl Header {
         let form = match self.form {
             Form::Full => 0,
             Form::Bitmask => 1,
+            Form::Octants => 2,
         };
         [self.primitives, self.references, self.entries, form, nx, ny, nz, x0, y0, z0, x1, y1, z1]
     }
@@ -43,6 +46,7 @@ impl Header {
         let form = match form {
             0 => Form::Full,
             1 => Form::Bitmask,
+            2 => Form::Octants,
             _ => return Err((3, Reason::Header)),
         };
         let corner = |bits: [u32; 3]| Vec3::from_array(bits.map(f32::from_bits));
@@ -98,21 +102,30 @@ impl<'a> Grid<'a> {
             }
             rank += bits.count_ones();
         }
-        let entries = if header.form == Form::Full { cells } else { rank as usize };
+        let entries = if header.form == Form::Bitmask { rank as usize } else { cells };
         if entries != header.entries as usize {
             return Err((2, Reason::Header));
         }
-        let mut least = 0;
+        let (mut least, mut said) = (0, 0);
         for entry in 0..=header.entries {
-            let offset = self.cells.offsets.get(entry);
+            let word = self.cells.offsets.get(entry);
+            let offset = word & self.cells.mask;
             let first = entry == 0 && offset != 0;
             let last = entry == header.entries && offset != header.references;
-            if first || last || offset < least {
+            if first || last || offset < least || offset > header.references {
                 return Err((HEADER_WORDS + self.cells.blocks.len(), Reason::References));
+            }
+            if header.form == Form::Octants {
+                let octants = (least..offset).fold(0, |all, index| all | octants_of(self.octants, index).unwrap_or(0));
+                if octants != said {
+                    return Err((HEADER_WORDS + entry as usize, Reason::References));
+                }
+                said = word >> 24;
             }
             least = offset;
         }
-        Ok(())
+        // The last word has no cell.
+        if said == 0 { Ok(()) } else { Err((HEADER_WORDS, Reason::References)) }
     }
 
     /// The parts of `words` by their header, if the lengths agree.
@@ -122,7 +135,7 @@ impl<'a> Grid<'a> {
         let (count, entries) = (header.references as usize, header.entries as usize);
         let (_, rest) = words.split_at_checked(HEADER_WORDS)?;
         let (blocks, rest) = rest.split_at_checked(block_words(header.form, frame.cells()))?;
-        let narrow = narrow_offsets(count);
+        let narrow = narrow_offsets(header.form, count);
         let (offsets, references) = rest.split_at_checked(number_words(entries.checked_add(1)?, narrow))?;
         let offsets = if narrow { References::narrow(offsets) } else { References::wide(offsets) };
         let narrow = narrow_references(header.primitives as usize);
@@ -135,7 +148,7 @@ impl<'a> Grid<'a> {
         }
         Some(Self {
             words,
-            cells: Cells { blocks, offsets },
+            cells: Cells { blocks, offsets, mask: if header.form == Form::Octants { OFFSET } else { u32::MAX } },
             references: if narrow { References::narrow(references) } else { References::wide(references) },
             octants: bytemuck::try_cast_slice(octants).ok()?,
             reference_count: header.references,
@@ -143,6 +156,7 @@ impl<'a> Grid<'a> {
             resolution: header.resolution,
             bounds: header.bounds,
             lattice: frame.lattice,
+            course: Course::new(&frame.lattice, &header.bounds),
         })
     }
 }

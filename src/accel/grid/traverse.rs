@@ -246,7 +246,7 @@ impl<'a> GridTraversal<'a> {
                 }
                 let cell = self.next_tied();
                 if let Some((first, count)) = self.cells.of(cell)
-                    && let Some(met) = Met::of(self.references, self.octants, first, count, 0xff)
+                    && let Some(met) = Met::of(self.references, self.octants, first, first.saturating_add(count), 0xff)
                 {
                     return Step::Leaf(met);
                 }
@@ -268,7 +268,9 @@ impl<'a> GridTraversal<'a> {
                     }
                     if let Some((first, count)) = self.cells.of(at) {
                         let octants = self.on_the_way(ray, enter, limit);
-                        if let Some(met) = Met::of(self.references, self.octants, first, count, octants) {
+                        if let Some(met) =
+                            Met::of(self.references, self.octants, first, first.saturating_add(count), octants)
+                        {
                             break (Next::Plane, Some(Step::Leaf(met)));
                         }
                     }

@@ -1,0 +1,247 @@
+//! The walk to the end of a ray at once, for queries that do not pause.
+//!
+//! Parameters are sums in registers, as in Amanatides and Woo's paper, and decide only what roundings cannot change:
+//! crossings come in their order if each is later than the last by more than a margin. Where one is not, the cursor
+//! begins anew and decides everything.
+
+use super::{
+    Grid,
+    cells::{Cells, OFFSET},
+    course::{Course, Side, Spacing},
+    met::Met,
+};
+use crate::{
+    accel::{Accelerator, leaf::References, visit_by},
+    geometry::{Axis, AxisView, PreparedRay, beyond},
+    math::{greatest, least},
+};
+
+/// Where a ray crosses the planes of an axis.
+struct Crossings<'c> {
+    next: f32,
+    step: f32,
+    /// What is added to the number of the cell.
+    stride: u32,
+    side: &'c Side,
+}
+
+impl<'c> Crossings<'c> {
+    /// Where a ray crosses the first plane, and where the last.
+    #[inline(always)]
+    fn of(spacing: &'c Spacing, view: &AxisView) -> (Self, f32) {
+        let side = &spacing.sides[(view.entry.to_bits() >> 31) as usize];
+        let inverse = view.entry.abs();
+        let next = (side.plane - view.origin) * view.entry;
+        (Self { next, step: spacing.width * inverse, stride: side.stride, side }, next + spacing.extent * inverse)
+    }
+
+    /// The octants of a cell in the halves along this axis that the ray may meet between these parameters.
+    #[inline(always)]
+    fn halves(&self, enter: f32, exit: f32) -> u32 {
+        let middle = self.next - 0.5 * self.step;
+        if middle < enter {
+            0xff ^ self.side.near
+        } else if middle > exit {
+            self.side.near
+        } else {
+            0xff
+        }
+    }
+
+    /// Crosses the next plane.
+    #[inline(always)]
+    fn cross(&mut self, clear: &mut f32, end: f32, margin: f32, at: &mut u32) -> Crossed {
+        let t = self.next;
+        if !(*clear < t) {
+            return Crossed::Close;
+        }
+        *clear = t + margin;
+        if t > end {
+            return Crossed::End;
+        }
+        self.next = t + self.step;
+        *at = at.wrapping_add(self.stride);
+        Crossed::Clear
+    }
+}
+
+/// What came of crossing a plane.
+enum Crossed {
+    /// The next cell.
+    Clear,
+    /// Nothing: it is close to the crossing before.
+    Close,
+    /// Nothing: it is behind the end.
+    End,
+}
+
+/// A table of cells, as a sweep asks it.
+trait Table {
+    /// What it says of a cell in which there is something; nothing of others.
+    fn look(&self, cell: u32) -> Option<u32>;
+
+    /// The octants in which there may be something.
+    fn octants(said: u32) -> u32;
+
+    /// The first reference and the one behind the last.
+    fn references(&self, cell: u32, said: u32) -> (u32, u32);
+}
+
+/// A word per cell: an offset and octants.
+struct Words<'a>(&'a [u32]);
+
+impl Table for Words<'_> {
+    #[inline(always)]
+    fn look(&self, cell: u32) -> Option<u32> {
+        self.0.get(cell as usize).copied().filter(|&word| word > OFFSET)
+    }
+
+    #[inline(always)]
+    fn octants(said: u32) -> u32 {
+        said >> 24
+    }
+
+    #[inline(always)]
+    fn references(&self, cell: u32, said: u32) -> (u32, u32) {
+        let next = self.0.get(cell.wrapping_add(1) as usize).copied().unwrap_or(0);
+        (said & OFFSET, next & OFFSET)
+    }
+}
+
+impl Table for Cells<'_> {
+    #[inline(always)]
+    fn look(&self, cell: u32) -> Option<u32> {
+        self.rank(cell)
+    }
+
+    #[inline(always)]
+    fn octants(_said: u32) -> u32 {
+        0xff
+    }
+
+    #[inline(always)]
+    fn references(&self, _cell: u32, said: u32) -> (u32, u32) {
+        self.offsets.pair(said).unwrap_or((0, 0))
+    }
+}
+
+/// Where a sweep is.
+struct Sweep<'c> {
+    x: Crossings<'c>,
+    y: Crossings<'c>,
+    z: Crossings<'c>,
+    /// The number of the cell at hand.
+    at: u32,
+    /// Crossings before this are close to the last one.
+    clear: f32,
+    margin: f32,
+    /// Where the ray is about to leave the last cell.
+    behind: f32,
+}
+
+impl<'c> Sweep<'c> {
+    /// At the beginning of a ray; none if it misses the bounds.
+    #[inline(always)]
+    fn of(course: &'c Course, ray: &PreparedRay) -> Option<Self> {
+        let Course { axes: [x, y, z], relative, absolute } = course;
+        let [vx, vy, vz, _] = &ray.views;
+        let ((mut x, x_exit), (mut y, y_exit), (mut z, z_exit)) =
+            (Crossings::of(x, vx), Crossings::of(y, vy), Crossings::of(z, vz));
+        let t_min = ray.ray().t_min;
+        let enter = greatest(greatest(greatest(x.next, t_min), y.next), z.next);
+        let exit = least(least(x_exit, y_exit), z_exit);
+        let margin = greatest(exit, -enter) * relative
+            + ((vx.exit.abs() + vy.exit.abs()) + vz.exit.abs()) * absolute
+            + ((t_min.abs() - t_min) * (1.0 / 4096.0) + 4.0 * f32::MIN_POSITIVE);
+        if enter > exit + margin {
+            return None;
+        }
+        let mut at = 0_u32;
+        for (line, axis) in [&mut x, &mut y, &mut z].into_iter().zip(Axis::ALL) {
+            let per_cell = course.axes[axis as usize].inverse * axis.of(ray.ray().direction).abs();
+            let before = (((enter - margin) - line.next) * per_cell) as u32;
+            at = at.wrapping_add(line.side.number).wrapping_add(before.wrapping_mul(line.stride));
+            line.next = (line.next + line.step) + before as i32 as f32 * line.step;
+        }
+        Some(Self { x, y, z, at, clear: enter, margin, behind: exit - 0.5 * margin })
+    }
+
+    /// To the end of the ray; false if that is not reached, because two crossings are close.
+    #[inline(always)]
+    fn run<T: Table>(self, table: T, t_max: f32, mut visit: impl FnMut((u32, u32), u32) -> Option<f32>) -> bool {
+        let Self { mut x, mut y, mut z, mut at, mut clear, margin, behind } = self;
+        let mut end = least(beyond(t_max) + margin, behind);
+        loop {
+            if let Some(said) = table.look(at) {
+                let exit = least(least(x.next, y.next), z.next);
+                let (from, to) = (clear - 2.0 * margin, exit + margin);
+                let octants = x.halves(from, to) & y.halves(from, to) & z.halves(from, to);
+                if octants & T::octants(said) != 0 {
+                    let Some(t_max) = visit(table.references(at, said), octants) else { return true };
+                    end = least(beyond(t_max) + margin, behind);
+                }
+            }
+            let crossed = if y.next < x.next {
+                if z.next < y.next {
+                    z.cross(&mut clear, end, margin, &mut at)
+                } else {
+                    y.cross(&mut clear, end, margin, &mut at)
+                }
+            } else if z.next < x.next {
+                z.cross(&mut clear, end, margin, &mut at)
+            } else {
+                x.cross(&mut clear, end, margin, &mut at)
+            };
+            match crossed {
+                Crossed::Clear => {}
+                Crossed::Close => return false,
+                // Behind what is wanted.
+                Crossed::End if end < behind => return true,
+                // Out of the last cell, if no other crossing is near.
+                Crossed::End => {
+                    let is_near = |t: f32| u32::from(!(t > clear));
+                    let [x, y, z] = [x, y, z].map(|line| is_near(line.next) + is_near(line.next + line.step));
+                    return x + y + z == 1;
+                }
+            }
+        }
+    }
+}
+
+impl<'a> Grid<'a> {
+    /// See [`Accelerator::visit`].
+    #[inline(always)]
+    pub(super) fn sweep(&self, ray: &PreparedRay, t_max: f32, mut visit: impl FnMut(Met<'a>) -> Option<f32>) {
+        match self.cells.offsets {
+            References::Wide(words) if self.cells.mask == OFFSET => {
+                self.sweep_over(Words(words), ray, t_max, &mut visit)
+            }
+            _ if !self.cells.blocks.is_empty() => self.sweep_over(self.cells, ray, t_max, &mut visit),
+            _ => self.walk(ray, t_max, &mut visit),
+        }
+    }
+
+    #[inline(always)]
+    fn sweep_over(
+        &self,
+        table: impl Table,
+        ray: &PreparedRay,
+        t_max: f32,
+        visit: &mut impl FnMut(Met<'a>) -> Option<f32>,
+    ) {
+        let Some(sweep) = Sweep::of(&self.course, ray) else { return };
+        let is_done = sweep.run(table, t_max, |(first, end), octants| {
+            visit(Met::new(self.references, self.octants, first, end, octants))
+        });
+        if !is_done {
+            self.walk(ray, t_max, visit);
+        }
+    }
+
+    /// The same by the cursor, which decides what is close.
+    #[cold]
+    #[inline(never)]
+    fn walk(&self, ray: &PreparedRay, t_max: f32, visit: &mut impl FnMut(Met<'a>) -> Option<f32>) {
+        visit_by(self.traverse(ray), ray, t_max, visit);
+    }
+}
