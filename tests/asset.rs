@@ -4,7 +4,10 @@
 
 mod common;
 
-use common::{Random, adversarial_mesh, adversarial_ray, plans, point};
+use common::{
+    Random, adversarial_mesh, adversarial_ray, plans, point,
+    seal::{checksum, sealed},
+};
 use hitscan::{
     Error, Instance, Instances, KdTree, List, Mesh, Ray, Scene,
     accel::{Plan, Reason, Structure},
@@ -14,21 +17,10 @@ use hitscan::{
     geometry::{Sphere, Transform},
     glam::{Mat3, Vec3},
     kdtree::Options,
-    primitives::{Reordered, Smooth, Spheres},
+    primitives::{Normals, Reordered, Smooth, Spheres},
     query::Progress,
     render::{Material, Materials, Numbers},
 };
-
-/// FNV-1a by words with a rotation, as the format defines it.
-fn checksum(words: &[u32]) -> u32 {
-    let summed = words.iter().enumerate().filter(|(index, _)| *index != 4);
-    summed.fold(0x811c_9dc5, |sum: u32, (_, word)| (sum ^ word).wrapping_mul(0x0100_0193).rotate_left(13))
-}
-
-fn sealed(mut words: Vec<u32>) -> Vec<u32> {
-    words[4] = checksum(&words);
-    words
-}
 
 fn soup(seed: u64, most: usize) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     adversarial_mesh(&mut Random::new(seed), 2, most)
@@ -112,6 +104,9 @@ fn normals_are_baked_and_shade() {
         blended += u32::from(packed.shading_normal != packed.geometric_normal);
     }
     assert!(blended > 500, "{blended}");
+    let stored: Normals = asset.read().unwrap();
+    assert!(stored.len() == 169 && !stored.is_empty());
+    assert!(Asset::from_words(&Baker::new().normals(&[]).finish()).unwrap().read::<Normals>().unwrap().is_empty());
     assert!(Asset::from_words(&flat).unwrap().read::<Smooth>().is_err());
 
     // Counts that are not those of the words.

@@ -4,7 +4,7 @@
 
 mod common;
 
-use common::{Random, adversarial_mesh, adversarial_ray, plans};
+use common::{Random, adversarial_mesh, adversarial_ray, plans, seal::seal};
 use hitscan::{
     Instance, Instances, LatticeMesh, List, Mesh, Primitives, Ray, Scene,
     accel::{Plan, Structure},
@@ -18,15 +18,6 @@ use hitscan::{
     query::Progress,
     render::{Material, Materials, Numbers},
 };
-
-/// FNV-1a by words with a rotation, as the format defines it.
-fn seal(words: &mut [u32]) {
-    let summed = words.iter().enumerate().filter(|(index, _)| *index != 4);
-    let sum = summed.fold(0x811c_9dc5, |sum: u32, (_, word)| (sum ^ word).wrapping_mul(0x0100_0193).rotate_left(13));
-    if let Some(place) = words.get_mut(4) {
-        *place = sum;
-    }
-}
 
 fn structure<'a>(plan: &Plan, words: &'a [u32]) -> Structure<'a> {
     Structure::open(plan.kind().unwrap(), words).unwrap()

@@ -14,6 +14,7 @@ use hitscan::{
     instances::InstanceError,
     lattice_scene::LatticeError,
     primitives::{MeshError, Order, Renumbering, Reordered, Spheres},
+    render::{Texels, Texture},
     scene::Mismatch,
 };
 
@@ -49,6 +50,16 @@ fn what_is_no_shape_no_order_no_map() {
         "the order of primitives and its inverse differ at place 2",
     );
     says(Transform::new(Mat3::ZERO, Vec3::ZERO).unwrap_err(), "the transform cannot be inverted: its determinant is 0");
+}
+
+#[test]
+fn what_is_no_texture() {
+    let texture = |width, texels| Texture::new(width, 2, texels).unwrap_err();
+    says(texture(0, Texels::Rgb565(&[])), "the texture has no pixels");
+    says(texture(3, Texels::Rgb565(&[0; 5])), "the texture's slice should have 6 elements, not 5");
+    // Two texels an element.
+    let texels = Texels::Palette4 { palette: &[0], texels: &[0; 6] };
+    says(texture(3, texels), "the texture's slice should have 3 elements, not 6");
 }
 
 #[test]
@@ -112,6 +123,8 @@ fn what_is_no_asset() {
         (Kind::NarrowIndices, "16-bit indices"),
         (Kind::WideIndices, "32-bit indices"),
         (Kind::Normals, "normals"),
+        (Kind::TexCoords, "texture coordinates"),
+        (Kind::Soup, "triangle soup"),
         (Kind::Spheres, "spheres"),
         (Kind::KdTree, "kD-tree"),
         (Kind::CompactKdTree, "compact kD-tree"),
@@ -124,6 +137,7 @@ fn what_is_no_asset() {
         (Kind::Part, "part"),
         (Kind::Materials, "materials"),
         (Kind::MaterialNumbers, "material numbers"),
+        (Kind::Textures, "textures"),
         (Kind::Unknown(0xBAD), "unknown (0x00000bad)"),
     ];
     for (kind, name) in kinds {

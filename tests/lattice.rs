@@ -4,7 +4,7 @@
 
 mod common;
 
-use common::{FAMILIES, Random, adversarial_mesh, adversarial_ray, bits, plans};
+use common::{FAMILIES, Random, adversarial_mesh, adversarial_ray, bits, plans, seal::sealed};
 use hitscan::{
     Accelerator, DualSplit, Error, LatticeMesh, List, Mesh, Primitives, Ray, Scene,
     accel::{Plan, Structure},
@@ -124,16 +124,6 @@ fn bad_frames_and_corners_are_named() {
     assert_eq!(error(most, [0, 1, 2]), Some(MeshError::Vertex { triangle: 0, vertex: 2 }));
     assert_eq!(error(most, [0, 1, 1]), None);
     assert!(LatticeMesh::new(&unit, &numbers, &[[0_u16, 1, 2]]).unwrap().with_masks(&[1, 2]).is_err());
-}
-
-fn checksum(words: &[u32]) -> u32 {
-    let summed = words.iter().enumerate().filter(|(index, _)| *index != 4);
-    summed.fold(0x811c_9dc5, |sum: u32, (_, word)| (sum ^ word).wrapping_mul(0x0100_0193).rotate_left(13))
-}
-
-fn sealed(mut words: Vec<u32>) -> Vec<u32> {
-    words[4] = checksum(&words);
-    words
 }
 
 fn baked(corners: &[[u32; 3]], numbers: &[[u16; 3]]) -> Vec<u32> {

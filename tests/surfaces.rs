@@ -10,7 +10,9 @@ use common::{Random, adversarial_mesh, adversarial_ray, bits, meshes, plans};
 use hitscan::{
     Arena, Grid, Hit, KdTree, List, Mesh, Octree, Primitives, Ray, Scene,
     accel::{self, Plan, Structure},
-    bake, from_fn,
+    asset::{Asset, Kind},
+    bake::{self, Baker},
+    from_fn,
     geometry::Aabb,
     glam::{Vec2, Vec3},
     grid, kdtree, octree,
@@ -155,4 +157,24 @@ fn who_counts_changes_nothing() {
 
 fn bounds(aabb: Aabb) -> [Vec3; 2] {
     [aabb.min, aabb.max]
+}
+
+#[test]
+fn orders_are_as_narrow_as_their_numbers() {
+    let vertices = [Vec3::ZERO, Vec3::X, Vec3::Y];
+    for (count, bytes) in [(1, 2), (2, 2), (3, 2), (65_536, 2), (65_537, 4)] {
+        let corners = vec![[0_u32, 1, 2]; count];
+        let mesh = Mesh::new(&vertices, &corners[..]).unwrap();
+        let order: Vec<u32> = (0..count as u32).rev().collect();
+        let words = Baker::new().mesh(&mesh).numbers(&order).finish();
+        let asset = Asset::from_words(&words).unwrap();
+        assert_eq!(asset.section(Kind::Numbers).unwrap().len(), 1 + 2 * (count * bytes).div_ceil(4), "{count}");
+        let reordered: Reordered<Mesh> = asset.read().unwrap();
+        let scene = Scene::new(List::new(&reordered).unwrap(), reordered).unwrap();
+        // All are in one place: the owner's first is the last here.
+        let ray = Ray::new(Vec3::new(0.2, 0.2, 1.0), Vec3::NEG_Z);
+        assert_eq!(scene.closest_hit(&ray).map(|hit| hit.primitive), Some(0), "{count}");
+        let last = scene.closest_hit_where(&ray, |hit| hit.primitive as usize == count - 1);
+        assert!(last.is_some(), "{count}");
+    }
 }

@@ -235,14 +235,7 @@ mod baked {
         bake::Baker,
     };
 
-    use super::*;
-
-    fn sealed(mut words: Vec<u32>) -> Vec<u32> {
-        let summed = words.iter().enumerate().filter(|(index, _)| *index != 4);
-        words[4] =
-            summed.fold(0x811c_9dc5, |sum: u32, (_, word)| (sum ^ word).wrapping_mul(0x0100_0193).rotate_left(13));
-        words
-    }
+    use super::{common::seal::sealed, *};
 
     fn start(words: &[u32], kind: Kind) -> (usize, usize) {
         let asset = Asset::from_words(words).unwrap();

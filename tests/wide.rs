@@ -120,12 +120,15 @@ fn tile(random: &mut Random, vertices: &[Vec3], family: usize) -> Vec<Ray> {
 
 #[test]
 fn packets_answer_as_the_list() {
-    let mut random = Random::new(77 + common::seed());
+    let mut random = Random::new(77 + 100 * common::seed());
     let kinds: Vec<Simd> = Simd::available().collect();
     let (mut cast, mut hits) = (0, 0);
     while cast < common::rays(1_000_000) {
         let family = random.below(FAMILIES);
-        let (vertices, triangles) = adversarial_mesh(&mut random, family, 48);
+        let (mut vertices, triangles) = adversarial_mesh(&mut random, family, 48);
+        // Where areas leave the range in which one scale suffices, the list tries another before it asks slower tiers.
+        let scale = random.pick(&[1.0, 1.0, 2.0_f32.powi(-13), 2.0_f32.powi(-17), 2.0_f32.powi(34)]);
+        vertices.iter_mut().for_each(|vertex| *vertex *= scale);
         let masks: Vec<u32> = triangles.iter().map(|_| random.pick(&[1, 2, 3, u32::MAX])).collect();
         let mesh = some_hidden(&mut random, Mesh::new(&vertices, &triangles[..]).unwrap(), &masks);
         let list = Scene::new(List::new(&mesh).unwrap(), &mesh).unwrap();

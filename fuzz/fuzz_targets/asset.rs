@@ -12,14 +12,17 @@ use hitscan::{
     render::{Texels, Texture, Textures},
 };
 use libfuzzer_sys::fuzz_target;
+use std::sync::LazyLock;
 
-/// A small asset with a structure of this kind, normals and textures, for the fuzzer to damage.
-fn seed(kind: u8) -> Vec<u32> {
+/// A small asset with a structure of each kind, for the fuzzer to damage.
+static SEEDS: LazyLock<Vec<Vec<u32>>> =
+    LazyLock::new(|| Plan::all().filter(|plan| plan.kind().is_some()).map(seed).collect());
+
+/// A small asset with a structure by this plan, normals and textures.
+fn seed(plan: Plan) -> Vec<u32> {
     let vertices: Vec<Vec3> = (0..24).map(|i| Vec3::new((i * 7 % 5) as f32, (i * 3 % 4) as f32, i as f32)).collect();
     let triangles: Vec<[u16; 3]> = (0..8).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
     let mesh = Mesh::new(&vertices, &triangles[..]).unwrap();
-    let plans: Vec<Plan> = Plan::all().filter(|plan| plan.kind().is_some()).collect();
-    let plan = plans[usize::from(kind) % plans.len()];
     let words = bake::build(&mesh, &plan).unwrap();
     let structure = Structure::open(plan.kind().unwrap(), &words).unwrap();
     let (normals, coordinates) = ([Vec3::Z; 24], [Vec2::ONE; 24]);
@@ -42,7 +45,7 @@ fn checksum(words: &[u32]) -> u32 {
 fuzz_target!(|input: (u8, Vec<(u16, u32)>)| {
     let (kind, changes) = input;
     // Changes to a good asset go deeper than random words; the sum is made to fit, or nothing but it would be tested.
-    let mut words = seed(kind);
+    let mut words = SEEDS[usize::from(kind) % SEEDS.len()].clone();
     let mut length = words.len();
     for (place, word) in changes {
         match place {

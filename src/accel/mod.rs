@@ -18,7 +18,7 @@ mod mailbox;
 mod malformed;
 pub mod octree;
 mod on_lattice;
-mod segment;
+pub(crate) mod segment;
 mod slope;
 mod sort;
 mod structure;

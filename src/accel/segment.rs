@@ -31,7 +31,7 @@ impl Segment {
     /// The part of the ray where one of a bundle that was looked into beforehand begins.
     #[inline(always)]
     pub(crate) fn of_entry(entry: &Entry, ray: &PreparedRay) -> Option<Self> {
-        Self::within(&entry.bounds, entry.node, ray, slack(ray.ray().t_min))
+        Self::within(&entry.bounds, entry.node, ray, slack_within(&entry.bounds, ray))
     }
 
     /// From `enter` to `exit`, for the first node; none if it ends before it begins.
@@ -45,6 +45,25 @@ impl Segment {
     pub(crate) fn up_to(self, end: f32) -> Self {
         Self { exit: least(self.exit, end), ..self }
     }
+}
+
+/// By how much exits are late in a walk through `bounds`: by the slack of where the ray enters them. How far before it begins is
+/// no matter; a walk that took that for it would skip little.
+#[inline(always)]
+pub(crate) fn slack_within(bounds: &Aabb, ray: &PreparedRay) -> f32 {
+    if ray.ray().t_min < 0.0 { slack_behind(bounds, ray) } else { slack(0.0) }
+}
+
+/// That of a ray that reaches back.
+#[cold]
+#[inline(never)]
+fn slack_behind(bounds: &Aabb, ray: &PreparedRay) -> f32 {
+    let (min, max) = (bounds.min.to_array(), bounds.max.to_array());
+    let near = min.into_iter().zip(max).zip(&ray.views).map(|((min, max), view)| {
+        let near = if view.ascends() { min } else { max };
+        (near - view.origin) * view.entry
+    });
+    slack(near.fold(ray.ray().t_min, |enter, near| greatest(near, enter)))
 }
 
 /// Segments that wait, the nearest on top; as many as the tree is deep.

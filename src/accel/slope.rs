@@ -1,6 +1,6 @@
 use glam::Vec3;
 
-use super::segment::Segment;
+use super::segment::{Segment, slack_within};
 use crate::{
     geometry::{Aabb, Axis, AxisView, Lattice, PreparedRay, beyond, slack},
     math::{greatest, least},
@@ -77,7 +77,7 @@ impl Slopes {
     /// Of planes that are `thickness` steps thick, a number names the face before, whichever way the ray comes.
     #[inline(always)]
     pub(crate) fn new(ray: &PreparedRay, lattice: &Lattice, thickness: f32) -> (Self, Option<Segment>) {
-        let slack = slack(ray.ray().t_min);
+        let slack = if ray.ray().t_min < 0.0 { slack_within(&whole(lattice), ray) } else { slack(0.0) };
         let along = |axis| Slope::along(axis, ray, lattice, thickness, slack);
         let ((x, a), (y, b), (z, c)) = (along(Axis::X), along(Axis::Y), along(Axis::Z));
         // NaN and infinity are not below.
@@ -127,11 +127,7 @@ impl Slope {
     #[cold]
     #[inline(never)]
     fn carefully(ray: &PreparedRay, lattice: &Lattice, thickness: f32, slack: f32) -> [Self; 3] {
-        let at = |axis, number| lattice.position(axis, number);
-        let min = Vec3::new(at(Axis::X, 0), at(Axis::Y, 0), at(Axis::Z, 0));
-        let last = |axis| at(axis, lattice.last(axis));
-        let max = Vec3::new(last(Axis::X), last(Axis::Y), last(Axis::Z));
-        let Some(whole) = Segment::within(&Aabb::new(min, max), 0, ray, slack) else { return [Self::NEVER; 3] };
+        let Some(whole) = Segment::within(&whole(lattice), 0, ray, slack) else { return [Self::NEVER; 3] };
         let end = greatest(whole.enter.abs(), whole.exit.abs());
         Axis::ALL.map(|axis| {
             let (slope, largest) = Self::along(axis, ray, lattice, thickness, slack);
@@ -188,6 +184,18 @@ impl Slope {
     }
 }
 
+/// What lies between a lattice's first planes and its last ones.
+#[cold]
+#[inline(never)]
+fn whole(lattice: &Lattice) -> Aabb {
+    let at = |axis, number| lattice.position(axis, number);
+    let last = |axis| at(axis, lattice.last(axis));
+    Aabb::new(
+        Vec3::new(at(Axis::X, 0), at(Axis::Y, 0), at(Axis::Z, 0)),
+        Vec3::new(last(Axis::X), last(Axis::Y), last(Axis::Z)),
+    )
+}
+
 /// Where the first plane's face lies at which the ray enters, and that at which it leaves.
 #[inline(always)]
 fn faces(view: &AxisView, begin: f32, step: f32, thickness: f32) -> (f32, f32) {
@@ -219,7 +227,8 @@ mod tests {
             }
             let t_min = t_mins[random.below(t_mins.len() as u32) as usize];
             let Some(ray) = Ray::new(origin, direction).starting_at(t_min).prepare() else { continue };
-            let (bounds, slack) = (Aabb::around([a, b]), slack(ray.ray().t_min));
+            let bounds = Aabb::around([a, b]);
+            let slack = slack_within(&bounds, &ray);
             let last = [0xffff, 0x3fff, 1][random.below(3) as usize];
             let thickness = random.below(2);
             let lattice = Lattice::over(&bounds, [last; 3]);

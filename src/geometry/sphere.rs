@@ -121,6 +121,17 @@ mod tests {
     }
 
     #[test]
+    fn closest_points_lie_between_point_and_middle() {
+        let sphere = Sphere::new(Vec3::new(1.0, -2.0, 0.5), 3.0);
+        for (far, sign) in [(9.0, 1.0), (1.5, -1.0)] {
+            let towards = Vec3::new(2.0, 1.0, -2.0) * (sign / 3.0);
+            let closest = sphere.closest_point(sphere.center + towards * far);
+            assert!((closest - (sphere.center + towards * 3.0)).length() < 1.0e-6, "{closest}");
+        }
+        assert_eq!(sphere.closest_point(sphere.center), sphere.center + Vec3::X * 3.0);
+    }
+
+    #[test]
     fn a_huge_sphere_nearby_keeps_its_digits() {
         let [t, _] = intersect([0.0, -1.0e5, 0.0], 99_999.0, [1000.0, 5.0, 0.0], [0.0, -1.0, 0.0]).unwrap();
         assert!((t / 11.000_175 - 1.0).abs() < 1.0e-5, "{t}");

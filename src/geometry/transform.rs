@@ -173,6 +173,7 @@ impl Transform {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::{math::greatest, testing::Random};
 
     #[test]
     fn singular_and_non_finite_maps_are_refused() {
@@ -190,6 +191,29 @@ mod tests {
         assert!((turned / 1.0e-10 - 1.0).abs() < 1.0e-6);
         assert_eq!(factor(Mat3::from_diagonal(Vec3::new(1.0, 1.0, 1.001))), None);
         assert_eq!(factor(Mat3::from_cols(Vec3::X, Vec3::Y, Vec3::new(0.001, 0.0, 1.0))), None);
+    }
+
+    #[test]
+    fn errors_grow_as_far_as_is_said_and_no_farther() {
+        let mut random = Random::new(5);
+        for _ in 0..2000 {
+            let mut number = |scale: f32| (random.unit() - 0.5) * scale;
+            let mut column = |scale: f32| Vec3::new(number(2.0), number(2.0), number(2.0)) * scale;
+            let linear = Mat3::from_cols(column(1.0), column(0.01), column(30.0));
+            let (p, translation) = (column(10.0), column(1000.0));
+            let Ok(map) = Transform::new(linear, translation) else { continue };
+            // What is farthest along an axis: a corner of the cube.
+            let corners = Aabb::new(Vec3::NEG_ONE, Vec3::ONE).corners();
+            let farthest = corners.map(|corner| map.vector(corner).abs().max_element()).into_iter().fold(0.0, greatest);
+            assert!((map.stretch() / farthest - 1.0).abs() < 1.0e-5, "{map:?}");
+            // There and back and, without rounding, there again.
+            let there = map.point(p);
+            let back = map.point_back(there).as_dvec3();
+            let off = (map.linear.as_dmat3() * back + map.translation.as_dvec3() - there.as_dvec3()).abs();
+            assert!(off.cmple(map.error(p.abs()).as_dvec3()).all(), "{map:?} {p}");
+            let known = (map.linear.abs() * p.abs() + translation.abs()) * (16.0 / 16_777_216.0);
+            assert!(map.error(p.abs()).cmpge(known * 0.999).all(), "{map:?} {p}");
+        }
     }
 
     #[test]

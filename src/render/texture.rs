@@ -104,7 +104,9 @@ impl fmt::Display for TextureError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Empty => write!(f, "the texture has no pixels"),
-            Self::Texels { expected, found } => write!(f, "the texture takes {expected} texels, not {found}"),
+            Self::Texels { expected, found } => {
+                write!(f, "the texture's slice should have {expected} elements, not {found}")
+            }
         }
     }
 }

@@ -18,7 +18,7 @@ use super::{
     walk::{self, Query},
 };
 use crate::{
-    geometry::{PreparedRay, Ray, ShearLanes, beyond},
+    geometry::{Aabb, PreparedRay, Ray, ShearLanes, beyond},
     primitives::Hit,
     query::end_of,
 };
@@ -136,9 +136,9 @@ impl Waiting<'_> {
 
 impl Runner {
     #[inline(always)]
-    fn new(ray: &Ray, root: Child, index: usize) -> Option<Self> {
+    fn new(ray: &Ray, root: Child, bounds: &Aabb, index: usize) -> Option<Self> {
         let ray = PreparedRay::here(ray)?;
-        let (sides, best) = (Sides::of(&ray), end_of(&ray));
+        let (sides, best) = (Sides::of(&ray, bounds), end_of(&ray));
         Some(Self { ray, sides, best, behind: beyond(best.t), child: root, waiting: 0, index })
     }
 
@@ -190,6 +190,7 @@ impl Runner {
 struct Queue<'r, A> {
     rays: &'r [Ray],
     root: Child,
+    bounds: &'r Aabb,
     next: usize,
     answers: A,
 }
@@ -201,7 +202,7 @@ impl<A: Answers> Queue<'_, A> {
         loop {
             let (ray, index) = (self.rays.get(self.next)?, self.next);
             self.next += 1;
-            match Runner::new(ray, self.root, index) {
+            match Runner::new(ray, self.root, self.bounds, index) {
                 None => self.answers.put(index, None),
                 runner => return runner,
             }
@@ -285,7 +286,7 @@ fn run<S: Simd, A: Answers>(simd: S, tree: &Tree, rays: &[Ray], mut answers: A) 
         (0..rays.len()).for_each(|index| answers.put(index, None));
         return;
     };
-    let mut queue = Queue { rays, root, next: 0, answers };
+    let mut queue = Queue { rays, root, bounds: &tree.bounds, next: 0, answers };
     let mut runners = Vec::with_capacity(RUNNERS);
     let (mut nodes, mut blocks) = (Places::NONE, Places::NONE);
     while runners.len() < RUNNERS {

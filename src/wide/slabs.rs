@@ -1,7 +1,10 @@
 use fearless_simd::{Simd, SimdBase, SimdMask, f32x8};
 
 use super::node::{Node, WIDTH};
-use crate::geometry::{PreparedRay, beyond, slack};
+use crate::{
+    accel::segment::slack_within,
+    geometry::{Aabb, PreparedRay, beyond, slack},
+};
 
 /// A ray as the test of eight boxes wants it (rules R1, R2 and R4 of ARCHITECTURE.md).
 #[derive(Clone, Copy, Debug)]
@@ -40,11 +43,13 @@ pub(super) struct Sides {
 }
 
 impl Sides {
+    /// Of a ray through a tree with these bounds.
     #[inline(always)]
-    pub(super) fn of(ray: &PreparedRay) -> Self {
+    pub(super) fn of(ray: &PreparedRay, bounds: &Aabb) -> Self {
         let [x, y, z, _] = &ray.views;
         let (x, y, z) = (usize::from(!x.ascends()), usize::from(!y.ascends()), usize::from(!z.ascends()));
-        Self { near: [x, 2 + y, 4 + z], octant: x | y << 1 | z << 2, slack: slack(ray.ray().t_min) }
+        let slack = slack_within(bounds, ray);
+        Self { near: [x, 2 + y, 4 + z], octant: x | y << 1 | z << 2, slack }
     }
 }
 

@@ -101,7 +101,7 @@ impl<S: Simd, R: Asker> Query<'_, S, R> {
 pub(super) fn closest<S: Simd>(simd: S, tree: &Tree, ray: &Ray) -> Option<Hit> {
     let prepared = PreparedRay::here(ray);
     let ray = prepared.as_ref()?;
-    let slabs = Slabs::new(simd, ray, slabs::Sides::of(ray));
+    let slabs = Slabs::new(simd, ray, slabs::Sides::of(ray, &tree.bounds));
     let query = Query { simd, tree, asker: ray, shear: ShearLanes::new(simd, ray) };
     let best = closest_below(&query, &slabs, tree.root?, end_of(ray));
     (best.primitive != u32::MAX).then_some(best)
@@ -144,7 +144,7 @@ pub(super) fn closest_below<S: Simd, R: Asker>(
 pub(super) fn any<S: Simd>(simd: S, tree: &Tree, ray: &Ray) -> bool {
     let prepared = PreparedRay::here(ray);
     let (Some(ray), Some(root)) = (prepared.as_ref(), tree.root) else { return false };
-    let slabs = Slabs::new(simd, ray, slabs::Sides::of(ray));
+    let slabs = Slabs::new(simd, ray, slabs::Sides::of(ray, &tree.bounds));
     let query = Query { simd, tree, asker: ray, shear: ShearLanes::new(simd, ray) };
     any_below(&query, &slabs, root, end_of(ray))
 }

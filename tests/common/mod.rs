@@ -4,8 +4,10 @@
 use hitscan::{Hit, Ray, geometry::Aabb, glam::Vec3};
 
 pub mod closed;
+pub mod memo;
 pub mod meshes;
 pub mod plans;
+pub mod seal;
 
 /// How many rays a test casts: `usual`, or as many as `HITSCAN_RAYS` says, for long runs.
 pub fn rays(usual: usize) -> usize {

@@ -1,9 +1,9 @@
 //! kD-trees: the words asked for suffice and the bytes allowed hold, whatever the options.
 
 use crate::common::meshes::{crossing, hair, identical, random, separate};
-use crate::common::{FAMILIES, Random, adversarial_mesh};
+use crate::common::{FAMILIES, Random, adversarial_mesh, seal::checksum};
 use hitscan::{
-    Arena, KdTree, Mesh, Primitives,
+    Arena, CompactKdTree, KdTree, Mesh, Primitives,
     error::BuildError,
     kdtree::{Options, Split},
 };
@@ -111,4 +111,16 @@ fn bytes_that_are_allowed_are_used() {
         let size = build(&mesh, &mut memory, &free.fit(bytes)).unwrap().as_words().len() * 4;
         assert!(size <= bytes && size > bytes * 9 / 10, "{size} of {bytes}");
     }
+}
+
+#[test]
+fn compact_cells_are_halved_as_they_always_were() {
+    let (vertices, triangles) = random(300, 0.5);
+    let mesh = Mesh::new(&vertices, &triangles[..]).unwrap();
+    let sums = [Split::Midpoint, Split::Median].map(|split| {
+        let options = Options { split, ..Options::fast() };
+        let mut memory = vec![0; CompactKdTree::words(triangles.len(), &options)];
+        checksum(CompactKdTree::build(&mesh, &mut Arena::new(&mut memory), &options).unwrap().as_words())
+    });
+    assert_eq!(sums, [1_730_359_063, 1_181_372_736]);
 }

@@ -15,6 +15,7 @@ mod kdtree;
 mod memory;
 mod octree;
 mod quality;
+mod reach;
 
 /// Rays for each comparison with the list; `tests/equality.rs` casts more at all structures.
 fn rays() -> usize {

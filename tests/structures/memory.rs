@@ -49,6 +49,29 @@ fn build<'m, P: Primitives>(primitives: &P, memory: &'m mut [u32], plan: &Plan) 
     Structure::build(primitives, &mut Arena::new(memory), plan)
 }
 
+#[test]
+fn what_is_not_clipped_lies_in_more_cells() {
+    let (vertices, triangles) = random(200, 1.0);
+    let mesh = Mesh::new(&vertices, &triangles[..]).unwrap();
+    for base in [Plan::KdTree(kdtree::Options::fast()), Plan::CompactKdTree(kdtree::Options::fast())]
+        .into_iter()
+        .chain([Plan::Octree(octree::Options::fast()), Plan::Grid(grid::Options::fast())])
+    {
+        let [clipped, whole] = [true, false].map(|clip| {
+            let plan = match base {
+                Plan::KdTree(options) => Plan::KdTree(kdtree::Options { clip, ..options }),
+                Plan::CompactKdTree(options) => Plan::CompactKdTree(kdtree::Options { clip, ..options }),
+                Plan::Octree(options) => Plan::Octree(octree::Options { clip, ..options }),
+                Plan::Grid(options) => Plan::Grid(grid::Options { clip, ..options }),
+                other => other,
+            };
+            let mut memory = vec![0; plan.words(triangles.len())];
+            build(&mesh, &mut memory, &plan).unwrap().as_words().to_vec()
+        });
+        assert_ne!(clipped, whole, "{base:?}");
+    }
+}
+
 /// Builds in arenas of every size behind an earlier tenant until it goes.
 fn refuses_until_it_goes((vertices, triangles): &Triangles, plan: &Plan) {
     let mesh = Mesh::new(vertices, &triangles[..]).unwrap();

@@ -5,8 +5,12 @@ use super::{
     met::Met,
 };
 use crate::{
-    accel::{Step, Traversal, leaf::References, segment::Segment},
-    geometry::{Axis, AxisView, Lattice, PreparedRay, beyond, slack},
+    accel::{
+        Step, Traversal,
+        leaf::References,
+        segment::{Segment, slack_within},
+    },
+    geometry::{Axis, AxisView, Lattice, PreparedRay, beyond},
     math::{greatest, least},
 };
 
@@ -66,7 +70,7 @@ impl<'a> GridTraversal<'a> {
     /// A walk at the beginning of the ray; made where it stays, because moving it would cost as much as some cells.
     #[inline(always)]
     pub(super) fn new(grid: &Grid<'a>, ray: &PreparedRay) -> Self {
-        let slack = slack(ray.ray().t_min);
+        let slack = slack_within(&grid.bounds, ray);
         let segment = if grid.primitives > 0 { Segment::within(&grid.bounds, 0, ray, slack) } else { None };
         let is_met = segment.is_some();
         let Segment { enter, exit, .. } = segment.unwrap_or(Segment { node: 0, enter: 0.0, exit: f32::NEG_INFINITY });

@@ -3,9 +3,9 @@ use crate::{
     accel::{
         Leaf, Step, Traversal,
         leaf::References,
-        segment::{Segment, Waiting},
+        segment::{Segment, Waiting, slack_within},
     },
-    geometry::{Aabb, PreparedRay, beyond, slack},
+    geometry::{Aabb, PreparedRay, beyond},
     math::{greatest, least},
 };
 
@@ -24,7 +24,7 @@ pub struct KdTraversal<'a, const HEIGHT: usize = MAX_DEPTH> {
 impl<'a, const HEIGHT: usize> KdTraversal<'a, HEIGHT> {
     #[inline]
     pub(super) fn new(tree: &KdTree<'a, HEIGHT>, bounds: &Aabb, node: u32, ray: &PreparedRay) -> Self {
-        let slack = slack(ray.ray().t_min);
+        let slack = slack_within(bounds, ray);
         Self {
             nodes: tree.nodes,
             references: tree.references,
