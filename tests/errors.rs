@@ -34,7 +34,6 @@ fn what_is_no_mesh() {
     says(mesh.with_masks(&[1, 2]).unwrap_err(), "2 masks were given for 1 triangles");
     says(MeshError::Frame, "the box of the lattice is empty, not finite or beyond 2^126");
     says(MeshError::TooMany, "a mesh holds at most 2^32 - 2 triangles");
-    says(MeshError::Corner { place: 4, corner: 2 }, "corner 2 of the facet at place 4 is not finite or beyond 2^126");
 }
 
 #[test]

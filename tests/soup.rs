@@ -137,7 +137,7 @@ fn what_is_no_soup_is_refused() {
     let mut bad = facets;
     bad[2].corners[1][2] = f32::NAN;
     let error = Soup::new(&bad, &[1, 0]).unwrap_err();
-    assert_eq!(error, Error::Mesh(MeshError::Corner { place: 2, corner: 1 }));
+    assert_eq!(error, Error::Mesh(MeshError::Vertex { triangle: 2, vertex: 1 }));
 }
 
 #[test]

@@ -65,7 +65,9 @@ fn same_at_once<A: Accelerator, P: Primitives>(
 ) {
     let Some(pencil) = camera.pencil(tile, side, side) else { return };
     let mut hits = ItemBuffer::new();
-    scene.closest_hits(&pencil, &mut hits);
+    if !scene.closest_hits(&pencil, &mut hits) {
+        return;
+    }
     for (x, y) in tile.pixels() {
         let (column, row) = (x - tile.x, y - tile.y);
         let ray = camera.ray(x as f32 + 0.5, y as f32 + 0.5, side, side);

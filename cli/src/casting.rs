@@ -74,7 +74,7 @@ impl Casting {
         source.with_subject(path, &self.structure, false, |subject| {
             visit(&|bytes| {
                 let rays = rays::decode(bytes, self.interval);
-                rays.iter().flat_map(|ray| self.query.ask(subject.scene, ray).to_bytes()).collect()
+                self.query.ask(subject.scene, &rays).iter().flat_map(|hit| hit.to_bytes()).collect()
             })
         })
     }
@@ -92,16 +92,19 @@ pub enum Query {
 }
 
 impl Query {
-    pub fn ask(self, scene: &dyn Queries, ray: &RayRecord) -> HitRecord {
-        let ray = Ray::from(ray);
+    /// The answers to rays, in their order.
+    pub fn ask(self, scene: &dyn Queries, rays: &[RayRecord]) -> Vec<HitRecord> {
+        let rays: Vec<Ray> = rays.iter().map(Ray::from).collect();
+        let closest = |hit: Option<Hit>| hit.map_or(HitRecord::MISS, |Hit { t, primitive }| HitRecord { t, primitive });
+        let any = |is_hit| if is_hit { HitRecord { t: 0.0, primitive: 0 } } else { HitRecord::MISS };
+        let count = |ray: &Ray| {
+            let (first, primitive) = scene.count(ray);
+            HitRecord { t: first.map_or(f32::INFINITY, |hit| hit.t), primitive }
+        };
         match self {
-            Self::Closest => scene.closest_hit(&ray, 0).map_or(HitRecord::MISS, record),
-            Self::Any if scene.any_hit(&ray, 0) => HitRecord { t: 0.0, primitive: 0 },
-            Self::Any => HitRecord::MISS,
-            Self::Count => {
-                let (first, primitive) = scene.count(&ray);
-                HitRecord { t: first.map_or(f32::INFINITY, |hit| hit.t), primitive }
-            }
+            Self::Closest => scene.first_hits(&rays).into_iter().map(closest).collect(),
+            Self::Any => scene.any_hits(&rays).into_iter().map(any).collect(),
+            Self::Count => rays.iter().map(count).collect(),
         }
     }
 
@@ -123,10 +126,6 @@ impl Query {
             Self::Any => u8::from(!hit.is_miss()).to_string(),
         }
     }
-}
-
-fn record(hit: Hit) -> HitRecord {
-    HitRecord { t: hit.t, primitive: hit.primitive }
 }
 
 #[cfg(test)]

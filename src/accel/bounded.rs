@@ -1,4 +1,4 @@
-use super::{Accelerator, Cell, Entries, Entry, Hierarchy, Inside, Step, Traversal};
+use super::{Accelerator, Cell, Entries, Entry, Hierarchy, Inside, LeafOf, Step, Traversal};
 use crate::geometry::{Aabb, Bundle, PreparedRay, Volume};
 
 /// A structure behind a volume: rays that miss the volume are not walked at all.
@@ -63,6 +63,10 @@ impl<V: Volume, A: Accelerator> Accelerator for Bounded<V, A> {
 
     fn enter(&self, bundle: &Bundle) -> Entries {
         self.accelerator.enter(bundle)
+    }
+
+    fn sweep(&self, bundle: &Bundle, visit: impl FnMut(LeafOf<Self>) -> f32) -> bool {
+        self.accelerator.sweep(bundle, visit)
     }
 
     /// Without a look at the volume: the entry's box is the smaller one.

@@ -1,4 +1,4 @@
-use super::{Accelerator, Entries, Entry, Step, Traversal};
+use super::{Accelerator, Entries, Entry, LeafOf, Step, Traversal};
 use crate::geometry::{Aabb, Bundle, PreparedRay};
 
 /// How many primitives are remembered, and of how many in a leaf it is looked up whether they are.
@@ -45,6 +45,10 @@ where
 
     fn enter(&self, bundle: &Bundle) -> Entries {
         self.0.enter(bundle)
+    }
+
+    fn sweep(&self, bundle: &Bundle, mut visit: impl FnMut(LeafOf<Self>) -> f32) -> bool {
+        self.0.sweep(bundle, |leaf| visit(Unseen { leaf, seen: 0 }))
     }
 
     #[inline]

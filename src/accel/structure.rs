@@ -150,6 +150,13 @@ macro_rules! structures {
                 }
             }
 
+            fn sweep(&self, bundle: &Bundle, mut visit: impl FnMut(AnyLeaf<'a>) -> f32) -> bool {
+                match self {
+                    Self::List(list) => list.sweep(bundle, |range| visit(AnyLeaf::All(range.into()))),
+                    $(Self::$name(structure) => structure.sweep(bundle, |leaf| visit(leaf.into())),)*
+                }
+            }
+
             fn traverse_from(&self, entry: &Entry, ray: &PreparedRay) -> AnyTraversal<'a> {
                 match self {
                     Self::List(list) => AnyTraversal::List(list.traverse_from(entry, ray)),

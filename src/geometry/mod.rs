@@ -35,7 +35,7 @@ pub use transform::{Singular, Transform};
 pub(crate) use triangle::intersect as intersect_triangle;
 pub use triangle::{Crossing, Triangle};
 #[cfg(feature = "std")]
-pub(crate) use triangle::{Possible, ShearLanes, Wedge, parameters};
+pub(crate) use triangle::{Possible, ShearLanes, Wedge, parameters, range};
 pub use volume::Volume;
 
 /// The largest coordinate magnitude accepted, 2^126: differences of two such numbers do not overflow.

@@ -51,8 +51,10 @@ impl Screen {
     }
 }
 
-/// 2^-15: what the edge functions of all rays may be off by, of the products of lengths that they are made of.
-const ERROR: f32 = 1.0 / 32_768.0;
+/// 2^-18, 64 u: what edge functions may be off by, of the sums of magnitudes that they are made of.
+///
+/// 16 u of it because directions are rounded, 4 u for the normals' sake, and two dozen for products, steps and sums.
+const ERROR: f32 = 1.0 / 262_144.0;
 
 /// Beyond this, products of three lengths may leave the range of `f32`.
 const LARGE: f32 = 1.0e24;
@@ -203,5 +205,49 @@ impl Edges {
             }
         }
         rays
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Triangles some pixels large, in front of an eye, turned in all ways.
+    #[test]
+    fn candidates_are_the_hits_and_hardly_more() {
+        let screen = Screen { forward: Vec3::Z, up: Vec3::Y * 0.36, right: Vec3::NEG_X * 0.36, half: [120.0; 2] };
+        let pencil = Pencil::new(Vec3::ONE, screen, [96, 136], [8, 7]).unwrap();
+        let mut state = 1_u32;
+        let mut random = |size: f32| {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            ((state >> 8) as f32 / 8_388_608.0 - 1.0) * size
+        };
+        let (mut hits, mut candidates) = (0, 0);
+        for _ in 0..20_000 {
+            let middle = pencil.ray(4, 4).at(5.0) + Vec3::new(random(0.06), random(0.06), random(1.0));
+            let mut corner = || middle + Vec3::new(random(0.08), random(0.08), random(0.08));
+            let triangle = Triangle::new(corner(), corner(), corner());
+            let rays = pencil.candidates(&triangle);
+            assert_eq!(rays & !pencil.all(), 0);
+            candidates += rays.count_ones();
+            for (column, row) in (0..7).flat_map(|row| (0..8).map(move |column| (column, row))) {
+                let ray = pencil.ray(column, row).prepare().unwrap();
+                if triangle.intersect(&ray, 0.0, f32::MAX).is_some() {
+                    hits += 1;
+                    assert_ne!(rays >> (row * Pencil::SIDE + column) & 1, 0, "{triangle:?} {column} {row}");
+                }
+            }
+        }
+        assert!(hits > 50_000 && candidates < hits + hits / 20, "{hits} {candidates}");
+    }
+
+    #[test]
+    fn pencils_have_some_rays_but_not_too_many() {
+        let screen = Screen { forward: Vec3::Z, up: Vec3::Y, right: Vec3::X, half: [8.0; 2] };
+        let rays = |columns, rows| Pencil::new(Vec3::ZERO, screen, [0, 0], [columns, rows]).map(|pencil| pencil.all());
+        assert_eq!(rays(8, 8), Some(u64::MAX));
+        assert_eq!(rays(3, 2), Some(0x0707));
+        assert_eq!(rays(1, 1), Some(1));
+        assert!(rays(0, 8).is_none() && rays(8, 0).is_none() && rays(9, 1).is_none() && rays(1, 9).is_none());
     }
 }

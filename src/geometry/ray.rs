@@ -190,6 +190,18 @@ pub(crate) struct Shear {
     pub(crate) inverse: f32,
 }
 
+/// One or the other; hosts, which cannot guess which axis is a ray's largest, without a branch.
+#[inline(always)]
+fn either<T>(first: bool, one: T, other: T) -> T {
+    if cfg!(feature = "std") {
+        core::hint::select_unpredictable(first, one, other)
+    } else if first {
+        one
+    } else {
+        other
+    }
+}
+
 impl PreparedRay {
     fn new(ray: &Ray) -> Option<Self> {
         Self::here(ray)
@@ -200,11 +212,8 @@ impl PreparedRay {
     pub(crate) fn here(ray: &Ray) -> Option<Self> {
         let (o, d) = (ray.origin, ray.direction);
         let (x, y, z) = (magnitude(d.x), magnitude(d.y), magnitude(d.z));
-        let (major, largest) = match (y > x, z > if y > x { y } else { x }) {
-            (_, true) => (Axis::Z, z),
-            (true, false) => (Axis::Y, y),
-            (false, false) => (Axis::X, x),
-        };
+        let (major, largest) = either(y > x, (Axis::Y, y), (Axis::X, x));
+        let (major, largest) = either(z > largest, (Axis::Z, z), (major, largest));
         let (x, y, z) = (magnitude(o.x), magnitude(o.y), magnitude(o.z));
         let farthest = x.max(y).max(z);
         // Finite limits spare every primitive the question whether its `t` overflowed; NaN stays what it is.
@@ -219,11 +228,8 @@ impl PreparedRay {
         let x = AxisView::new(o.x, d.x, forward);
         let y = AxisView::new(o.y, d.y, forward);
         let z = AxisView::new(o.z, d.z, forward);
-        let inverse = match major {
-            Axis::X => x.entry,
-            Axis::Y => y.entry,
-            Axis::Z => z.entry,
-        };
+        let inverse = either(major == Axis::Y, y.entry, x.entry);
+        let inverse = either(major == Axis::Z, z.entry, inverse);
         let shear = Shear { major, slope: [d.x * inverse, d.y * inverse, d.z * inverse], inverse };
         let bit = |view: &AxisView, axis: Axis| view.entry.to_bits() >> 31 << axis as u32;
         let descending = (bit(&x, Axis::X) | bit(&y, Axis::Y) | bit(&z, Axis::Z)) * 0x1111_1111;

@@ -41,19 +41,12 @@ pub enum MeshError {
         /// How many vertices there are.
         vertices: u32,
     },
-    /// A coordinate of a vertex is not finite or exceeds [`MAX_COORDINATE`](crate::geometry::MAX_COORDINATE).
+    /// A coordinate is not finite or exceeds [`MAX_COORDINATE`](crate::geometry::MAX_COORDINATE).
     Vertex {
-        /// The triangle that uses it.
+        /// The triangle that uses the vertex; of a [`Soup`](super::Soup) the place where it stands.
         triangle: u32,
-        /// The vertex's number among all vertices.
+        /// The vertex's number among all; of a [`Soup`](super::Soup), which has none, the triangle's corner: 0, 1 or 2.
         vertex: u32,
-    },
-    /// The same of a corner of a [`Facet`](super::Facet), which has no vertices that could be named.
-    Corner {
-        /// The place in the [`Soup`](super::Soup).
-        place: u32,
-        /// The corner: 0, 1 or 2.
-        corner: u32,
     },
     /// More than 2^32 - 2 triangles.
     TooMany,
@@ -76,9 +69,6 @@ impl fmt::Display for MeshError {
             }
             Self::Vertex { triangle, vertex } => {
                 write!(f, "vertex {vertex} of triangle {triangle} is not finite or beyond 2^126")
-            }
-            Self::Corner { place, corner } => {
-                write!(f, "corner {corner} of the facet at place {place} is not finite or beyond 2^126")
             }
             Self::Frame => write!(f, "the box of the lattice is empty, not finite or beyond 2^126"),
             Self::TooMany => write!(f, "a mesh holds at most 2^32 - 2 triangles"),

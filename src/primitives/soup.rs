@@ -57,14 +57,14 @@ impl<'a> Soup<'a> {
     ///
     /// # Errors
     ///
-    /// [`MeshError::Corner`] names the place and the corner that is not finite or beyond the range of coordinates,
+    /// [`MeshError::Vertex`] names the place and the corner that is not finite or beyond the range of coordinates,
     /// [`OrderError`] the place whose number is none, or where another triangle stands than the number says.
     pub fn new(facets: &'a [Facet], places: &'a [u32]) -> Result<Self, Error> {
         let count = u32::try_from(facets.len()).ok().filter(|&n| n < u32::MAX).ok_or(MeshError::TooMany)?;
         for (place, facet) in (0..count).zip(facets) {
             let is_out = |corner: &[f32; 3]| !in_range(Vec3::from_array(*corner));
             if let Some(corner) = facet.corners.iter().position(is_out) {
-                return Err(MeshError::Corner { place, corner: corner as u32 }.into());
+                return Err(MeshError::Vertex { triangle: place, vertex: corner as u32 }.into());
             }
             if facet.number as usize >= places.len() {
                 return Err(OrderError { place }.into());

@@ -1,7 +1,7 @@
 use super::start_of;
 use crate::{
-    accel::{Accelerator, Entries},
-    geometry::{Pencil, PreparedRay, Ray, beyond},
+    accel::Accelerator,
+    geometry::{Pencil, PreparedRay, beyond},
     math::greatest,
     primitives::{Hit, Primitives, Span},
     scene::Scene,
@@ -22,6 +22,10 @@ const NOTHING: Hit = Hit { t: f32::MAX, primitive: u32::MAX };
 /// How many of the triangles tested last are remembered.
 const RECENT: usize = 32;
 
+/// Triangles after which it is asked whether rays may hit half of them: where triangles are smaller than pixels, walks ray by
+/// ray see fewer.
+const PATIENCE: u32 = 48;
+
 impl ItemBuffer {
     /// Of rays that hit nothing.
     #[must_use]
@@ -35,15 +39,6 @@ impl ItemBuffer {
     pub fn get(&self, column: u32, row: u32) -> Option<Hit> {
         let hit = *self.0.chunks(Pencil::SIDE as usize).nth(row as usize)?.get(column as usize)?;
         (hit.primitive != u32::MAX).then_some(hit)
-    }
-
-    /// Asks for the first hit of each ray by itself.
-    pub fn fill(&mut self, pencil: &Pencil, closest_hit: impl Fn(&Ray) -> Option<Hit>) {
-        for (row, hits) in (0..pencil.rows()).zip(self.0.chunks_mut(Pencil::SIDE as usize)) {
-            for (column, hit) in (0..pencil.columns()).zip(hits) {
-                *hit = closest_hit(&pencil.ray(column, row)).unwrap_or(NOTHING);
-            }
-        }
     }
 
     /// The parameter behind which nothing matters to any of these rays.
@@ -60,46 +55,34 @@ impl Default for ItemBuffer {
 }
 
 impl<A: Accelerator, P: Primitives> Scene<A, P> {
-    /// The first hits of all rays of a pencil, each that of [`closest_hit`](Self::closest_hit).
+    /// The first hits of all rays of a pencil, each that of [`closest_hit`](Self::closest_hit); false if they are to be asked
+    /// for one by one.
     ///
     /// A kD-tree is walked once for all of them, and of each triangle that is met there, the rays that may hit it are found at
-    /// once. Other structures, and shapes that are no triangles, are asked ray by ray.
+    /// once. Other structures, and shapes that are no triangles or smaller than pixels, are not asked so.
     ///
     /// ```
-    /// # use hitscan::{List, Mesh, Scene, glam::Vec3};
+    /// # use hitscan::{Arena, KdTree, Mesh, Scene, glam::Vec3, kdtree::Options};
     /// # let vertices = [Vec3::new(-1.0, -1.0, 0.0), Vec3::new(1.0, -1.0, 0.0), Vec3::Y];
     /// # let mesh = Mesh::new(&vertices, &[[0_u16, 1, 2]])?;
-    /// # let scene = Scene::new(List::new(&mesh)?, &mesh)?;
+    /// # let mut memory = vec![0; KdTree::words(1, &Options::balanced())];
+    /// # let tree = KdTree::build(&mesh, &mut Arena::new(&mut memory), &Options::balanced())?;
+    /// # let scene = Scene::new(tree, &mesh)?;
     /// use hitscan::{query::ItemBuffer, render::{Camera, Tile}};
     /// let camera = Camera::framing(&scene.bounds(), Vec3::Z, Vec3::Y);
     /// let pencil = camera.pencil(&Tile { x: 28, y: 20, width: 8, height: 8 }, 64, 48).unwrap();
     /// let mut hits = ItemBuffer::new();
-    /// scene.closest_hits(&pencil, &mut hits);
+    /// assert!(scene.closest_hits(&pencil, &mut hits));
     /// assert_eq!(hits.get(3, 5), scene.closest_hit(&pencil.ray(3, 5)));
     /// # Ok::<(), hitscan::Error>(())
     /// ```
-    pub fn closest_hits(&self, pencil: &Pencil, hits: &mut ItemBuffer) {
-        if !self.sweep(pencil, hits) {
-            self.one_by_one(pencil, hits);
-        }
-    }
-
-    /// Ray by ray, from where they may begin.
-    #[inline(never)] // What one way keeps on the stack is not there in the other.
-    fn one_by_one(&self, pencil: &Pencil, hits: &mut ItemBuffer) {
-        let bundle = pencil.bundle();
-        let entries = bundle.map_or_else(|| Entries::everything(self.bounds()), |bundle| self.enter(&bundle));
-        hits.fill(pencil, |ray| self.closest_hit_from(&entries, ray));
-    }
-
-    /// All rays at once; false if that cannot be done.
-    #[inline(never)]
-    fn sweep(&self, pencil: &Pencil, hits: &mut ItemBuffer) -> bool {
+    pub fn closest_hits(&self, pencil: &Pencil, hits: &mut ItemBuffer) -> bool {
         let Some(bundle) = pencil.bundle() else { return false };
         *hits = ItemBuffer::new();
         let all = pencil.all();
         let (mut missing, mut end) = (all.count_ones(), f32::INFINITY);
-        let (mut recent, mut are_triangles) = ([u32::MAX; RECENT], true);
+        let (mut met, mut tests, mut is_done) = (0, 0, true);
+        let mut recent = [u32::MAX; RECENT];
         let walked = self.accelerator().sweep(&bundle, |leaf| {
             let mut is_changed = false;
             for index in leaf {
@@ -108,11 +91,16 @@ impl<A: Accelerator, P: Primitives> Scene<A, P> {
                     _ => continue,
                 }
                 let Some(outline) = self.primitives().outline(index) else {
-                    are_triangles = false;
+                    is_done = false;
                     return f32::NEG_INFINITY;
                 };
                 let mut begin = None;
                 let mut rays = pencil.candidates(&outline);
+                (met, tests) = (met + 1, tests + rays.count_ones());
+                if met > PATIENCE && tests < met / 2 {
+                    is_done = false;
+                    return f32::NEG_INFINITY;
+                }
                 while rays != 0 {
                     let number = rays.trailing_zeros();
                     rays &= rays - 1;
@@ -138,6 +126,6 @@ impl<A: Accelerator, P: Primitives> Scene<A, P> {
             }
             end
         });
-        walked && are_triangles
+        walked && is_done
     }
 }

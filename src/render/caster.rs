@@ -26,11 +26,9 @@ pub trait Caster {
         self.closest_hit(ray, 0)
     }
 
-    /// The first hits of all the camera's rays in a tile.
-    fn closest_hits(&self, pencil: &Pencil, hits: &mut ItemBuffer) {
-        let bundle = pencil.bundle();
-        let entries = bundle.map_or_else(|| Entries::everything(self.bounds()), |bundle| self.enter(&bundle));
-        hits.fill(pencil, |ray| self.closest_hit_from(&entries, ray));
+    /// The first hits of all the camera's rays in a tile; false if they are to be asked for one by one.
+    fn closest_hits(&self, _pencil: &Pencil, _hits: &mut ItemBuffer) -> bool {
+        false
     }
 
     /// Whether anything lies on the ray, a shadow ray.
@@ -67,8 +65,8 @@ impl<A: Accelerator, P: Primitives> Caster for Scene<A, P> {
         Self::closest_hit_from(self, entries, ray)
     }
 
-    fn closest_hits(&self, pencil: &Pencil, hits: &mut ItemBuffer) {
-        Self::closest_hits(self, pencil, hits);
+    fn closest_hits(&self, pencil: &Pencil, hits: &mut ItemBuffer) -> bool {
+        Self::closest_hits(self, pencil, hits)
     }
 
     fn any_hit(&self, ray: &Ray, _depth: u32) -> bool {

@@ -38,6 +38,22 @@ const SAMPLES: u32 = 8;
 /// One with a pixel of each 8 x 8, and two for each halving of the distance.
 const PASSES: u32 = 7;
 
+/// How far apart pixels were before this pair of passes, 8, 4 or 2, and half as much: powers of two.
+const fn strides(pass: u32) -> (u32, u32) {
+    match pass {
+        0 => (COARSEST, COARSEST),
+        pass => {
+            let stride = COARSEST >> ((pass - 1) / 2);
+            (stride, stride / 2)
+        }
+    }
+}
+
+/// Whether a pass is of pixels in the middle of four that were there.
+const fn is_diagonal(pass: u32) -> bool {
+    pass % 2 == 1
+}
+
 impl Interlaced {
     /// Those of a picture of this size.
     #[must_use]
@@ -47,12 +63,11 @@ impl Interlaced {
 
     /// Those of a pass and of what follows.
     fn from_pass(width: u32, height: u32, pass: u32) -> Self {
-        let nowhere = Tile { x: 0, y: 0, width: 0, height: 0 };
-        let begun = Self { width, height, pass, tiles: Tiles::new(0, 0, 1, 1), tile: nowhere, next: (0, 0) };
-        let (stride, half) = begun.strides();
+        let (stride, half) = strides(pass);
         // As many samples in a tile on the diagonals as at first, half as many beside them.
-        let side = SAMPLES * if begun.is_diagonal() { stride } else { half };
-        Self { tiles: Tiles::new(width, height, side, side), ..begun }
+        let side = SAMPLES * if is_diagonal(pass) { stride } else { half };
+        let nowhere = Tile { x: 0, y: 0, width: 0, height: 0 };
+        Self { width, height, pass, tiles: Tiles::new(width, height, side, side), tile: nowhere, next: (0, 0) }
     }
 
     /// The tile of the block that came last.
@@ -67,25 +82,9 @@ impl Interlaced {
         self.pass
     }
 
-    /// How far apart pixels were before this pair of passes, 8, 4 or 2, and half as much: powers of two.
-    const fn strides(&self) -> (u32, u32) {
-        match self.pass {
-            0 => (COARSEST, COARSEST),
-            pass => {
-                let stride = COARSEST >> ((pass - 1) / 2);
-                (stride, stride / 2)
-            }
-        }
-    }
-
-    /// Whether the pass is of pixels in the middle of four that were there.
-    const fn is_diagonal(&self) -> bool {
-        self.pass % 2 == 1
-    }
-
     /// The next block of the tile.
     fn next_in_tile(&mut self) -> Option<Tile> {
-        let (stride, half) = self.strides();
+        let (stride, half) = strides(self.pass);
         let Tile { x, y, width, height } = self.tile;
         loop {
             let (dx, dy) = self.next;
@@ -93,7 +92,7 @@ impl Interlaced {
                 return None;
             }
             if dx >= width {
-                let dy = dy + if self.is_diagonal() { stride } else { half };
+                let dy = dy + if is_diagonal(self.pass) { stride } else { half };
                 self.next = (self.first(dy), dy);
                 continue;
             }
@@ -104,8 +103,8 @@ impl Interlaced {
 
     /// Where a row of the pass begins.
     const fn first(&self, dy: u32) -> u32 {
-        let (_, half) = self.strides();
-        let is_between = self.is_diagonal() || (self.pass > 0 && dy & half == 0);
+        let (_, half) = strides(self.pass);
+        let is_between = is_diagonal(self.pass) || (self.pass > 0 && dy & half == 0);
         if is_between { half } else { 0 }
     }
 }
@@ -120,7 +119,7 @@ impl Iterator for Interlaced {
             }
             if let Some(tile) = self.tiles.next() {
                 self.tile = tile;
-                let dy = if self.is_diagonal() { self.strides().1 } else { 0 };
+                let dy = if is_diagonal(self.pass) { strides(self.pass).1 } else { 0 };
                 self.next = (self.first(dy), dy);
             } else {
                 *self = Self::from_pass(self.width, self.height, self.pass + 1);

@@ -2,8 +2,8 @@ use core::cell::Cell;
 
 use glam::Vec3;
 
-use super::{Caster, Renderer, Tile};
-use crate::{accel::Entries, geometry::Ray, primitives::Hit, query::ItemBuffer};
+use super::{Caster, Renderer, Tile, renderer::First};
+use crate::{accel::Entries, geometry::Ray};
 
 /// A tile of a picture, with where in the scene its rays may begin.
 ///
@@ -25,9 +25,7 @@ use crate::{accel::Entries, geometry::Ray, primitives::Hit, query::ItemBuffer};
 pub struct Patch<'a, S: ?Sized> {
     renderer: Renderer<'a, S>,
     /// None if each ray begins with everything.
-    pub(super) entries: Option<Entries>,
-    /// What the rays of its pixels hit first, if that is known: from this corner on.
-    hits: Option<(&'a ItemBuffer, [u32; 2])>,
+    entries: Option<Entries>,
     /// What last kept the light of each of the first lights from a point.
     occluders: [Cell<Option<u32>>; LIGHTS],
 }
@@ -38,23 +36,19 @@ const LIGHTS: usize = 4;
 impl<'a, S: Caster + ?Sized> Patch<'a, S> {
     pub(super) fn new(renderer: Renderer<'a, S>, tile: &Tile) -> Self {
         let entries = renderer.bundle(tile).map(|bundle| renderer.scene.enter(&bundle));
-        Self { renderer, entries, hits: None, occluders: Default::default() }
+        Self { renderer, entries, occluders: Default::default() }
     }
 
-    /// The tile whose rays hit this.
-    pub(super) fn of_hits(renderer: Renderer<'a, S>, tile: &Tile, hits: &'a ItemBuffer) -> Self {
-        Self { renderer, entries: None, hits: Some((hits, [tile.x, tile.y])), occluders: Default::default() }
-    }
-
-    /// What the ray of a pixel hits first, if that is known.
-    pub(super) fn first_hit(&self, x: u32, y: u32) -> Option<Option<Hit>> {
-        self.hits.map(|(hits, corner)| hits.get(x.wrapping_sub(corner[0]), y.wrapping_sub(corner[1])))
+    /// A tile whose first hits are known.
+    pub(super) fn begun(renderer: Renderer<'a, S>) -> Self {
+        Self { renderer, entries: None, occluders: Default::default() }
     }
 
     /// The linear colour of a pixel of the tile, as [`Renderer::pixel`].
     #[must_use]
     pub fn pixel(&self, x: u32, y: u32) -> Vec3 {
-        self.renderer.pixel_from(Some(self), x, y)
+        let first = self.entries.as_ref().map_or(First::Unknown, First::From);
+        self.renderer.pixel_from(Some(self), first, x, y)
     }
 
     /// Whether something keeps the light of this number from where a shadow ray begins.

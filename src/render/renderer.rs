@@ -4,6 +4,7 @@ use glam::Vec3;
 
 use super::{Camera, Caster, Color, Light, Materials, Patch, Progressive, Terms, Tile, Tiles, shade::mirror};
 use crate::{
+    accel::Entries,
     geometry::{Aabb, Bundle, Pencil, Ray},
     primitives::{Hit, unit},
     query::ItemBuffer,
@@ -29,6 +30,17 @@ impl core::error::Error for TooShort {}
 
 /// Pixels that a patch is wide and high.
 pub(super) const PATCH: u32 = Pencil::SIDE;
+
+/// What a camera's ray hits first.
+#[derive(Clone, Copy)]
+pub(super) enum First<'p> {
+    /// To be looked for from the beginning.
+    Unknown,
+    /// From where those of a tile begin.
+    From(&'p Entries),
+    /// Known.
+    Known(Option<Hit>),
+}
 
 /// A picture of a scene, computed where it is looked at.
 ///
@@ -179,17 +191,17 @@ impl<'a, S: Caster + ?Sized> Renderer<'a, S> {
         }
         let mut hits = ItemBuffer::new();
         for part in tile.parts(PATCH, PATCH) {
-            let patch = match self.pencil(&part) {
-                Some(pencil) => {
-                    self.scene.closest_hits(&pencil, &mut hits);
-                    Patch::of_hits(*self, &part, &hits)
-                }
-                None => self.patch(part),
-            };
+            let at_once = self.pencil(&part).is_some_and(|pencil| self.scene.closest_hits(&pencil, &mut hits));
+            let patch = if at_once { Patch::begun(*self) } else { self.patch(part) };
             for (x, y) in part.pixels() {
                 let index = (y - tile.y) as usize * tile.width as usize + (x - tile.x) as usize;
                 if let Some(pixel) = pixels.get_mut(index) {
-                    *pixel = C::from_linear(patch.pixel(x, y));
+                    let light = if at_once {
+                        self.pixel_from(Some(&patch), First::Known(hits.get(x - part.x, y - part.y)), x, y)
+                    } else {
+                        patch.pixel(x, y)
+                    };
+                    *pixel = C::from_linear(light);
                 }
             }
         }
@@ -239,36 +251,34 @@ impl<'a, S: Caster + ?Sized> Renderer<'a, S> {
     /// The linear colour of a pixel, the mean of its samples.
     #[must_use]
     pub fn pixel(&self, x: u32, y: u32) -> Vec3 {
-        self.pixel_from(None, x, y)
+        self.pixel_from(None, First::Unknown, x, y)
     }
 
-    /// The colour of a pixel, of a patch or by itself.
-    pub(super) fn pixel_from(&self, patch: Option<&Patch<'_, S>>, x: u32, y: u32) -> Vec3 {
+    /// The colour of a pixel, of a patch or by itself; what is known of the first hit is that of its only ray.
+    pub(super) fn pixel_from(&self, patch: Option<&Patch<'_, S>>, first: First<'_>, x: u32, y: u32) -> Vec3 {
         let step = 1.0 / self.samples as f32;
         let mut sum = Vec3::ZERO;
         for j in 0..self.samples {
             for i in 0..self.samples {
                 let (dx, dy) = ((i as f32 + 0.5) * step, (j as f32 + 0.5) * step);
                 let ray = self.camera.ray(x as f32 + dx, y as f32 + dy, self.width, self.height);
-                sum += self.light_along(patch, ray, patch.and_then(|patch| patch.first_hit(x, y)));
+                sum += self.light_along(patch, first, ray);
             }
         }
         sum * (step * step)
     }
 
     /// The light that arrives against `ray`: Whitted, *An improved illumination model for shaded display*, 1980, as a loop.
-    ///
-    /// What it hits first may be known.
-    fn light_along(&self, patch: Option<&Patch<'_, S>>, mut ray: Ray, mut first: Option<Option<Hit>>) -> Vec3 {
+    fn light_along(&self, patch: Option<&Patch<'_, S>>, mut first: First<'_>, mut ray: Ray) -> Vec3 {
         let (mut light, mut share) = (Vec3::ZERO, 1.0);
-        let mut entries = patch.and_then(|patch| patch.entries.as_ref());
         for depth in 0..=self.bounces {
-            // Only the camera's own ray begins where those of the tile do.
-            let hit = match (first.take(), entries.take()) {
-                (Some(hit), _) => hit,
-                (None, Some(entries)) => self.scene.closest_hit_from(entries, &ray),
-                (None, None) => self.scene.closest_hit(&ray, depth),
+            let hit = match first {
+                First::Unknown => self.scene.closest_hit(&ray, depth),
+                First::From(entries) => self.scene.closest_hit_from(entries, &ray),
+                First::Known(hit) => hit,
             };
+            // Only of the camera's own ray anything is known.
+            first = First::Unknown;
             let Some(hit) = hit else {
                 return light + self.sky(ray.direction) * share;
             };

@@ -65,8 +65,8 @@ impl<S: Caster + ?Sized> Caster for Textured<'_, S> {
         self.scene.enter(bundle)
     }
 
-    fn closest_hits(&self, pencil: &Pencil, hits: &mut ItemBuffer) {
-        self.scene.closest_hits(pencil, hits);
+    fn closest_hits(&self, pencil: &Pencil, hits: &mut ItemBuffer) -> bool {
+        self.scene.closest_hits(pencil, hits)
     }
 
     fn closest_hit_from(&self, entries: &Entries, ray: &Ray) -> Option<Hit> {

@@ -9,7 +9,7 @@ use fearless_simd::{Bytes, Simd, SimdBase, f32x8, u32x8};
 use glam::Vec3;
 
 use super::{node::WIDTH, permute::permute, slabs::row};
-use crate::geometry::{Possible, ShearLanes, Triangle, Wedge};
+use crate::geometry::{Possible, Ray, ShearLanes, Triangle, Wedge, range};
 
 /// Words before the corners.
 const HEAD: usize = 3;
@@ -44,6 +44,12 @@ impl<'t> Block<'t> {
     #[inline(always)]
     pub(super) const fn lanes(self) -> u32 {
         self.words[0] >> ABOVE
+    }
+
+    /// Something of each line of the cache.
+    #[inline(always)]
+    pub(super) const fn touch(self) -> u32 {
+        self.words[0] ^ self.words[16] ^ self.words[32]
     }
 
     /// The number of a triangle.
@@ -82,6 +88,16 @@ impl<'t> Block<'t> {
         let points = [self.row(simd, x), self.row(simd, y), self.row(simd, z)];
         let corners = [self.pick(simd, 0, points), self.pick(simd, 1, points), self.pick(simd, 2, points)];
         wedge.may_hit(simd, corners) & self.lanes()
+    }
+
+    /// The least and the greatest parameter at which the ray may hit a triangle if it does, by doubles; none if they do not tell.
+    #[inline(always)]
+    pub(super) fn range<S: Simd>(self, simd: S, lane: usize, ray: &Ray) -> Option<[f32; 2]> {
+        let place = |which: usize| self.words[which] >> (3 * (lane % WIDTH)) & 7;
+        let (a, b, c) = (place(0), place(1), place(2));
+        let places = u32x8::load_array(simd, [b, c, a, b, c, a, b, c]);
+        let along = |axis: usize| permute(simd, self.row(simd, axis).bitcast(), places).bitcast();
+        range(simd, [along(0), along(1), along(2)], self.corner(lane, 0), ray)
     }
 
     /// All corners' coordinates along an axis.

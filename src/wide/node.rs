@@ -22,10 +22,16 @@ pub(super) const CHILDREN: usize = 6;
 pub(super) const ORDERS: usize = 7;
 
 impl Node {
-    /// A node whose boxes no ray meets. If one is entered all the same, what is there is `child`.
-    pub(super) fn empty(child: Child) -> Self {
+    /// A node without children. Rays miss their boxes, unless they lie in planes or reach back where no axis decides.
+    pub(super) const fn empty() -> Self {
         let (min, max) = ([f32::INFINITY.to_bits(); WIDTH], [f32::NEG_INFINITY.to_bits(); WIDTH]);
-        Self { rows: [min, max, min, max, min, max, [child.0; WIDTH], [0; WIDTH]] }
+        Self { rows: [min, max, min, max, min, max, [Child::NONE.0; WIDTH], [0; WIDTH]] }
+    }
+
+    /// Something of each line.
+    #[inline(always)]
+    pub(super) const fn touch(&self) -> u32 {
+        self.rows[0][0] ^ self.rows[2][0] ^ self.rows[4][0] ^ self.rows[6][0]
     }
 
     /// Puts a child into its place.
@@ -67,12 +73,16 @@ impl Node {
 pub(super) struct Child(pub u32);
 
 impl Child {
-    const LEAF: u32 = 1 << 31;
+    /// Set for blocks.
+    pub(super) const LEAF: u32 = 1 << 31;
 
     const CORNERS: u32 = 28;
 
     /// Words in which blocks can begin, at even ones.
-    pub(super) const MAX_WORDS: usize = 2 << Self::CORNERS;
+    pub(super) const MAX_WORDS: usize = (2 << Self::CORNERS) - 2;
+
+    /// No child: a block where none can begin.
+    pub(super) const NONE: Self = Self(u32::MAX);
 
     /// A node.
     pub(super) const fn node(index: u32) -> Self {

@@ -89,9 +89,10 @@ impl<S: Simd> Slabs<S> {
     pub(super) fn meet(&self, simd: S, node: &Node, limit: f32x8<S>) -> Met<S> {
         let ((x0, x1), (y0, y1), (z0, z1)) =
             (self.along(simd, node, 0), self.along(simd, node, 1), self.along(simd, node, 2));
-        // Where lanes are NaN, the second operand stays on x86; elsewhere the box is entered, which is as right.
-        let enter = z0.max(y0.max(x0.max(self.t_min)));
-        let exit = (z1.min(y1.min(x1.min(f32::INFINITY))) + self.slack).min(limit);
+        // Where lanes are NaN, the second operand stays on x86; elsewhere the box is entered, which is as right. Pairs, because
+        // nodes wait for each other, and no operation more than needed may stand between them.
+        let enter = z0.max(y0).max(x0.max(self.t_min));
+        let exit = z1.min(y1).min(x1.min(limit)) + self.slack;
         Met { enter, lanes: !enter.simd_gt(exit).to_bitmask() as u32 & 0xff }
     }
 }

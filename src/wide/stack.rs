@@ -10,14 +10,15 @@ pub(super) const ROOM: usize = (WIDTH - 1) * MAX_DEPTH as usize + WIDTH;
 #[derive(Debug)]
 pub(super) struct Stack(heapless::Vec<Waiting, ROOM>);
 
-/// A child and where it is entered, in the upper half, so that nearer ones are less where `t` is not negative.
+/// A child and where it is entered, in the upper half, so that nearer ones are less where `t` is not negative; blocks before nodes
+/// among those in which the ray begins, because a hit nearby spares more than a box.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Waiting(u64);
 
 impl Waiting {
     #[inline(always)]
     pub(super) fn new(enter: f32, child: u32) -> Self {
-        Self(u64::from(enter.to_bits()) << 32 | u64::from(child))
+        Self(u64::from(enter.to_bits()) << 32 | u64::from(child ^ Child::LEAF))
     }
 
     #[inline(always)]
@@ -27,7 +28,7 @@ impl Waiting {
 
     #[inline(always)]
     pub(super) const fn child(self) -> Child {
-        Child(self.0 as u32)
+        Child(self.0 as u32 ^ Child::LEAF)
     }
 }
 

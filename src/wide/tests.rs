@@ -2,8 +2,11 @@ use std::{vec, vec::Vec};
 
 use glam::Vec3;
 
-use super::{Options, WideBvh, node::CHILDREN};
-use crate::{primitives::Mesh, testing::Random};
+use super::{
+    Coherence, Options, WideBvh,
+    node::{CHILDREN, Child},
+};
+use crate::{List, Scene, geometry::Ray, primitives::Mesh, testing::Random};
 
 /// Hills of `side` x `side` x 2 triangles, some corners of which are moved.
 fn rough_hills(side: u32, size: f32) -> (Vec<Vec3>, Vec<[u32; 3]>) {
@@ -71,9 +74,8 @@ fn every_triangle_is_in_a_block_of_each_number_it_has() {
         let tree = WideBvh::new(&mesh, &options).unwrap().tree;
         let mut found = vec![0; triangles.len()];
         for &child in tree.nodes.iter().flat_map(|node| &node.rows[CHILDREN]) {
-            let child = super::node::Child(child);
-            // Empty places name the first block, of one corner.
-            if !child.is_block() || child.corners() < 3 {
+            let child = Child(child);
+            if !child.is_block() || child == Child::NONE {
                 continue;
             }
             let block = tree.block(child).unwrap();
@@ -84,5 +86,37 @@ fn every_triangle_is_in_a_block_of_each_number_it_has() {
             }
         }
         assert!(found.iter().all(|&times| times > 0));
+    }
+}
+
+#[test]
+fn what_passes_by_narrowly_is_missed() {
+    // So near to an edge, single precision does not tell the sides apart.
+    let vertices = [Vec3::ZERO, Vec3::X, Vec3::Y];
+    let wide = WideBvh::new(Mesh::new(&vertices, &[[0_u16, 1, 2]]).unwrap(), &Options::default()).unwrap();
+    for (beside, is_hit) in [(-1.0e-8, false), (-1.0e-30, false), (0.0, true), (1.0e-30, true), (1.0e-8, true)] {
+        let ray = Ray::new(Vec3::new(0.25, beside, -1.0), Vec3::Z);
+        assert_eq!(wide.closest_hit(&ray).is_some(), is_hit, "{beside}");
+        assert_eq!(wide.any_hit(&ray), is_hit, "{beside}");
+        for coherence in [Coherence::Coherent, Coherence::Incoherent] {
+            let (wide, mut hits) = (wide.clone().with_coherence(coherence), [None; 64]);
+            wide.closest_hits(&[ray; 64], &mut hits);
+            assert!(hits.iter().all(|hit| hit.is_some() == is_hit), "{beside}");
+        }
+    }
+}
+
+#[test]
+fn rays_in_planes_of_boxes_find_what_is_there() {
+    // Along axes from corners: planes whose parameters are no numbers, through nodes with empty places.
+    let (vertices, triangles) = rough_hills(12, 1.0);
+    let mesh = Mesh::new(&vertices, &triangles[..]).unwrap();
+    let (wide, list) =
+        (WideBvh::new(&mesh, &Options::fast()).unwrap(), Scene::new(List::new(&mesh).unwrap(), &mesh).unwrap());
+    for &origin in &vertices {
+        for direction in [Vec3::X, Vec3::NEG_Y, Vec3::Z, Vec3::new(1.0e-40, 1.0, -0.0)] {
+            let ray = Ray::new(origin, direction).starting_at(-1.0);
+            assert_eq!(wide.closest_hit(&ray), list.closest_hit(&ray), "{ray:?}");
+        }
     }
 }

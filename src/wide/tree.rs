@@ -1,13 +1,46 @@
 use std::vec::Vec;
 
+use fearless_simd::Simd;
+
 use super::{
     block::Block,
     node::{Child, Node},
 };
 use crate::{
-    geometry::{Aabb, PreparedRay},
+    geometry::{Aabb, Crossing, PreparedRay, Ray},
     primitives::{Hit, Sides, Span},
 };
+
+/// A ray as it was given, and as it is prepared where that is wanted.
+pub(super) trait Asker {
+    fn ray(&self) -> &Ray;
+
+    fn prepared(&self) -> Option<PreparedRay>;
+}
+
+impl Asker for PreparedRay {
+    #[inline(always)]
+    fn ray(&self) -> &Ray {
+        self.ray()
+    }
+
+    #[inline(always)]
+    fn prepared(&self) -> Option<PreparedRay> {
+        Some(*self)
+    }
+}
+
+impl Asker for Ray {
+    #[inline(always)]
+    fn ray(&self) -> &Ray {
+        self
+    }
+
+    #[inline(always)]
+    fn prepared(&self) -> Option<PreparedRay> {
+        self.prepare()
+    }
+}
 
 /// Nodes and blocks of triangles.
 #[derive(Clone, Debug)]
@@ -38,7 +71,7 @@ impl Tree {
         size_of_val(&self.nodes[..]) + size_of_val(&self.blocks[..]) + size_of_val(&self.masks[..])
     }
 
-    /// The block, and what lies behind it.
+    /// The block, and what lies behind it; none if there is no child.
     #[inline(always)]
     pub(super) fn block(&self, child: Child) -> Option<Block<'_>> {
         let words = self.blocks.get(child.first()..)?.first_chunk()?;
@@ -54,21 +87,31 @@ impl Tree {
     /// The hit with a triangle of a block that the lanes left open: by the slow tiers if `front` is known, else by all.
     #[cold]
     #[inline(never)]
-    pub(super) fn certify(
+    pub(super) fn certify<S: Simd>(
         &self,
-        block: Block<'_>,
-        lane: usize,
+        simd: S,
+        (block, lane): (Block<'_>, usize),
         front: Option<bool>,
-        ray: &PreparedRay,
+        asker: &impl Asker,
         span: &Span,
     ) -> Option<Hit> {
-        let triangle = block.triangle(lane);
-        let crossing = match front {
-            Some(_) => triangle.decide(ray, front)?,
-            None => triangle.intersect(ray, span.t_min(), span.t_max())?,
+        let ray = asker.ray();
+        let range = front.and_then(|_| {
+            simd.vectorize(
+                #[inline(always)]
+                || block.range(simd, lane, ray),
+            )
+        });
+        let crossing = match (front, range) {
+            (Some(front), Some([low, high])) if low.to_bits() == high.to_bits() && low.is_finite() => {
+                Crossing { t: low, front }
+            }
+            (_, Some([low, high])) if high < span.t_min() || low > span.t_max() => return None,
+            (Some(_), _) => block.triangle(lane).decide(&asker.prepared()?, front)?,
+            (None, _) => block.triangle(lane).intersect(&asker.prepared()?, span.t_min(), span.t_max())?,
         };
         let number = block.number(lane);
-        let is_hit = (crossing.front || self.sides == Sides::Both) && self.is_seen(number, ray.ray().mask);
+        let is_hit = (crossing.front || self.sides == Sides::Both) && self.is_seen(number, ray.mask);
         if is_hit { span.accept(crossing.t, number) } else { None }
     }
 }

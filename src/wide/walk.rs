@@ -7,7 +7,7 @@ use super::{
     node::{CHILDREN, Child, Node, WIDTH},
     slabs::{self, Met, Slabs, limit},
     stack::{Stack, Waiting},
-    tree::Tree,
+    tree::{Asker, Tree},
 };
 use crate::{
     geometry::{PreparedRay, Ray, ShearLanes, beyond},
@@ -47,26 +47,6 @@ fn descend<S: Simd>(node: &Node, met: &Met<S>, stack: &mut Stack) -> Child {
 #[inline(always)]
 fn lane(lanes: u32) -> usize {
     lanes.trailing_zeros() as usize & (WIDTH - 1)
-}
-
-/// A ray as it was given, and as it is prepared where that is wanted.
-pub(super) trait Asker {
-    fn ray(&self) -> &Ray;
-
-    /// What `asked` says of the prepared ray.
-    fn prepared(&self, asked: impl FnOnce(&PreparedRay) -> Option<Hit>) -> Option<Hit>;
-}
-
-impl Asker for PreparedRay {
-    #[inline(always)]
-    fn ray(&self) -> &Ray {
-        self.ray()
-    }
-
-    #[inline(always)]
-    fn prepared(&self, asked: impl FnOnce(&PreparedRay) -> Option<Hit>) -> Option<Hit> {
-        asked(self)
-    }
 }
 
 /// What the walks of a ray share.
@@ -109,7 +89,7 @@ impl<S: Simd, R: Asker> Query<'_, S, R> {
             let lane = lane(open);
             open &= open - 1;
             let (front, span) = (crossings.is_front(lane), Span::new(from, *best));
-            if let Some(hit) = asker.prepared(|ray| tree.certify(block, lane, front, ray, &span)) {
+            if let Some(hit) = tree.certify(simd, (block, lane), front, asker, &span) {
                 *best = hit;
             }
         }
@@ -146,8 +126,7 @@ pub(super) fn closest_below<S: Simd, R: Asker>(
                 child = descend(node, &met, &mut stack);
                 continue;
             }
-        } else {
-            let Some(block) = tree.block(child) else { break };
+        } else if let Some(block) = tree.block(child) {
             let before = best.t;
             query.improve(block, &mut best);
             if best.t < before {
@@ -189,8 +168,7 @@ pub(super) fn any_below<S: Simd, R: Asker>(
                 child = descend_in_order(node, lanes, &mut stack);
                 continue;
             }
-        } else {
-            let Some(block) = tree.block(child) else { return false };
+        } else if let Some(block) = tree.block(child) {
             let mut best = until;
             query.improve(block, &mut best);
             if best.primitive != until.primitive {

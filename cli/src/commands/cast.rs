@@ -77,9 +77,7 @@ impl Cast {
         let begun = Instant::now();
         pool.install(|| {
             hits.par_chunks_mut(BATCH).zip(rays.par_chunks(BATCH)).for_each(|(hits, rays)| {
-                for (hit, ray) in hits.iter_mut().zip(rays) {
-                    *hit = self.casting.query.ask(scene, ray);
-                }
+                hits.copy_from_slice(&self.casting.query.ask(scene, rays));
                 progress.advance(rays.len() as u64);
             });
         });

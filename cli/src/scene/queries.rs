@@ -4,6 +4,16 @@ use hitscan::{Accelerator, Hit, Primitives, Ray, Scene, render::Caster};
 pub trait Queries: Caster + Sync {
     /// The first hit of the ray and the number of all of them.
     fn count(&self, ray: &Ray) -> (Option<Hit>, u32);
+
+    /// The first hits of all rays: some structures are faster when they are asked together.
+    fn first_hits(&self, rays: &[Ray]) -> Vec<Option<Hit>> {
+        rays.iter().map(|ray| self.closest_hit(ray, 0)).collect()
+    }
+
+    /// Whether there is anything on each of the rays.
+    fn any_hits(&self, rays: &[Ray]) -> Vec<bool> {
+        rays.iter().map(|ray| self.any_hit(ray, 0)).collect()
+    }
 }
 
 impl<A: Accelerator + Sync, P: Primitives + Sync> Queries for Scene<A, P> {

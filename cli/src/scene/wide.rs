@@ -95,4 +95,16 @@ impl<P: Primitives + Sync> Queries for Shown<'_, P> {
     fn count(&self, ray: &Ray) -> (Option<Hit>, u32) {
         self.all.count(ray)
     }
+
+    fn first_hits(&self, rays: &[Ray]) -> Vec<Option<Hit>> {
+        let mut hits = vec![None; rays.len()];
+        self.bvh.closest_hits(rays, &mut hits);
+        hits
+    }
+
+    fn any_hits(&self, rays: &[Ray]) -> Vec<bool> {
+        let mut hits = vec![false; rays.len()];
+        self.bvh.any_hits(rays, &mut hits);
+        hits
+    }
 }

@@ -173,8 +173,12 @@ fn cast<A: Accelerator, P: Primitives, E>(scene: Result<Scene<A, P>, E>) {
     let camera = Camera::pinhole(vector(), vector(), vector(), float());
     if let Some(pencil) = camera.pencil(&Tile { x: word(), y: word(), width: 8, height: 8 }, word(), word()) {
         let mut items = ItemBuffer::new();
-        scene.closest_hits(&pencil, &mut items);
-        black_box((items.get(word(), word()), pencil.columns(), pencil.rows()));
+        black_box((
+            scene.closest_hits(&pencil, &mut items),
+            items.get(word(), word()),
+            pencil.columns(),
+            pencil.rows(),
+        ));
     }
     let surface = scene.surface(&ray(), &hit);
     black_box((surface.start_towards(vector()), surface.normal_towards_ray(), scene.bounds(), hits));

@@ -11,7 +11,8 @@ pub struct Picture<'w> {
     world: &'w World,
     view: View,
     renderer: Renderer<'w, Tally>,
-    /// Each pixel once.
+    /// Each pixel once: the block that comes next, and those behind it.
+    next: Option<Tile>,
     order: Interlaced,
     /// Tiles of which each pixel is drawn once more.
     again: Tiles,
@@ -28,11 +29,13 @@ impl<'w> Picture<'w> {
         let view = view.sane();
         world.reset();
         let (width, height) = if view.samples > 1 { (view.width, view.height) } else { (0, 0) };
+        let mut order = Interlaced::new(view.width, view.height);
         Self {
             world,
             view,
             renderer: world.renderer(&view, 1),
-            order: Interlaced::new(view.width, view.height),
+            next: order.next(),
+            order,
             again: Tiles::new(width, height, TILE, TILE),
             tile: Tile { x: 0, y: 0, width: 0, height: 0 },
             patch: None,
@@ -44,17 +47,14 @@ impl<'w> Picture<'w> {
     pub fn step(&mut self, blocks: u32) -> u32 {
         let mut drawn = 0;
         while drawn < blocks {
-            // Looked at before it is gone on to: it may be of the next tile.
-            let mut ahead = self.order.clone();
-            let next = ahead.next();
-            if drawn > 0 && (next.is_none() || ahead.tile() != self.tile) {
+            let Some(block) = self.next else { break };
+            if drawn > 0 && self.order.tile() != self.tile {
                 return drawn;
             }
-            self.order = ahead;
-            let Some(block) = next else { break };
             self.enter(self.order.tile());
             self.draw(block);
             drawn += 1;
+            self.next = self.order.next();
         }
         if drawn > 0 { drawn } else { self.smooth() }
     }
@@ -106,7 +106,7 @@ impl<'w> Picture<'w> {
         self.tile
     }
 
-    /// How far apart the pixels are that are drawn: 8, 4, 2 or 1; 0 when edges are being smoothed.
+    /// How far apart the pixels are that are drawn next: 8, 4, 2 or 1; 0 when only edges are left to be smoothed.
     #[must_use]
     pub fn fineness(&self) -> u32 {
         8 >> self.order.pass().div_ceil(2)

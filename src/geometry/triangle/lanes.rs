@@ -3,7 +3,7 @@
 
 use core::marker::PhantomData;
 
-use fearless_simd::{Simd, SimdBase, SimdFloat, SimdMask, f32x8};
+use fearless_simd::{Select, Simd, SimdBase, SimdFloat, SimdMask, f32x8, mask32x8};
 
 use super::filter::{LARGE_AREA, SHEARED, SMALL, SMALL_AREA, TOLERANCE, U, UNDERFLOW};
 use crate::geometry::{
@@ -113,16 +113,17 @@ impl<S: Simd> ShearLanes<S> {
     #[inline(always)]
     pub(crate) fn new(simd: S, ray: &PreparedRay) -> Self {
         let (shear, [x, y, z, _]) = (&ray.shear, &ray.views);
-        // A way for each axis: what is found by its number has to be stored first.
-        let [sx, sy, sz] = shear.slope;
-        let (axes, [x, y, z], [sx, sy]) = match shear.major {
-            Axis::X => ([1, 2, 0], [y, z, x], [sy, sz]),
-            Axis::Y => ([2, 0, 1], [z, x, y], [sz, sx]),
-            Axis::Z => ([0, 1, 2], [x, y, z], [sx, sy]),
+        // By masks, because which axis it is cannot be guessed; written out, as all that is for kernels.
+        let (is_y, is_z) = (shear.major == Axis::Y, shear.major == Axis::Z);
+        let axes = [(shear.major as usize + 1) % 3, (shear.major as usize + 2) % 3, shear.major as usize];
+        let (is_y, is_z) = (mask32x8::splat(simd, is_y), mask32x8::splat(simd, is_z));
+        let among = |x: f32, y: f32, z: f32| {
+            is_z.select(f32x8::splat(simd, z), is_y.select(f32x8::splat(simd, y), f32x8::splat(simd, x)))
         };
-        // Written out, as all that is for kernels.
-        let (x, y, z) = (f32x8::splat(simd, x.origin), f32x8::splat(simd, y.origin), f32x8::splat(simd, z.origin));
-        let slope = [f32x8::splat(simd, sx), f32x8::splat(simd, sy)];
+        let (ox, oy, oz) = (x.origin, y.origin, z.origin);
+        let (x, y, z) = (among(oy, oz, ox), among(oz, ox, oy), among(ox, oy, oz));
+        let [sx, sy, sz] = shear.slope;
+        let slope = [among(sy, sz, sx), among(sz, sx, sy)];
         Self::of(axes, [x, y, z], slope, (f32x8::splat(simd, shear.inverse), shear.inverse <= 0.0))
     }
 }

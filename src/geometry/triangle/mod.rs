@@ -20,7 +20,7 @@ use self::filter::{Corner, Verdict};
 #[cfg(feature = "std")]
 pub(crate) use self::{
     lanes::{Possible, ShearLanes, Wedge},
-    shortcut_lanes::parameters,
+    shortcut_lanes::{parameters, range},
 };
 use super::{Aabb, Axis, PreparedRay, moved, ray::beyond};
 use crate::math::{self, greatest, least};

@@ -10,9 +10,9 @@ pub(super) const U: f64 = 1.0 / 9_007_199_254_740_992.0;
 
 /// A value and a bound on its error.
 #[derive(Clone, Copy)]
-struct Bounded {
-    value: f64,
-    error: f64,
+pub(super) struct Bounded {
+    pub value: f64,
+    pub error: f64,
 }
 
 impl Bounded {
@@ -42,6 +42,28 @@ fn determinant(x: &[f64; 3], y: &[f64; 3], z: &[f64; 3]) -> Bounded {
     Bounded { value, error: scale * (16.0 * U) }
 }
 
+/// By how much the area has to exceed its error: what is divided by the area's least value is then hardly more than by its own.
+pub(super) const SURE: f64 = 16.0;
+
+/// 1 / (1 - 1 / [`SURE`]), and what is rounded.
+pub(super) const WIDER: f64 = 1.08;
+
+/// The least and the greatest parameter at which the ray may cross the plane, of its edge functions and the volume before the
+/// triangle; none if next to nothing is known.
+///
+/// With the errors `e` of the volume `V` and `f` of the area `A`, the quotient is off by `(e + f |V / A|) / (|A| - f)` at most. Roundings
+/// keep order, so the parameter is the number that both are where they have the same bits.
+#[inline(always)]
+pub(super) fn range([u, v, w]: [Bounded; 3], volume: Bounded) -> Option<[f32; 2]> {
+    let area = u.value + v.value + w.value;
+    let area_error = (u.error + v.error + w.error) * 1.01;
+    let inverse = 1.0 / area;
+    let quotient = volume.value * inverse;
+    let error = (volume.error + quotient.abs() * area_error) * (inverse.abs() * WIDER) + quotient.abs() * (8.0 * U);
+    let range = [(quotient - error) as f32, (quotient + error) as f32];
+    (area.abs() > SURE * area_error).then_some(range)
+}
+
 pub(super) fn test(triangle: &Triangle, ray: &PreparedRay, front: Option<bool>) -> Option<Crossing> {
     let origin = ray.ray().origin;
     let d = ray.ray().direction.to_array().map(f64::from);
@@ -52,16 +74,9 @@ pub(super) fn test(triangle: &Triangle, ray: &PreparedRay, front: Option<bool>) 
         None => facing(triangle, ray, [u, v, w])?,
     };
 
-    let volume = determinant(&a, &b, &c);
-    let area = u.value + v.value + w.value;
-    let area_error = (u.error + v.error + w.error) * 1.01;
-    let quotient = volume.value / area;
-    let relative = volume.error / volume.value.abs() + area_error / (area.abs() - area_error) + 4.0 * U;
-    let (low, high) = ((quotient * (1.0 - relative)) as f32, (quotient * (1.0 + relative)) as f32);
-    let t = if area.abs() > 2.0 * area_error && relative < 1.0e-3 && low == high {
-        low
-    } else {
-        exact::parameter(triangle, ray)
+    let t = match range([u, v, w], determinant(&a, &b, &c)) {
+        Some([low, high]) if low.to_bits() == high.to_bits() => low,
+        _ => exact::parameter(triangle, ray),
     };
     t.is_finite().then_some(Crossing { t, front })
 }

@@ -1,18 +1,23 @@
-//! The second tier for a triangle and many rays at a time: [`shortcut`](super::shortcut) operation by operation.
+//! The second tier in lanes: [`shortcut`](super::shortcut) operation by operation, for a triangle and many rays at a time, or for
+//! the four determinants of one ray and a triangle.
 
-use fearless_simd::{Simd, SimdBase, SimdMask, f32x16, f64x8, mask64x8};
+use fearless_simd::{ExtractToken, Simd, SimdBase, SimdFloat, SimdMask, f32x8, f32x16, f64x4, f64x8, mask64x8};
 
-use super::{Triangle, shortcut::U};
+use super::{
+    Triangle,
+    shortcut::{self, SURE, U, WIDER},
+};
+use crate::geometry::Ray;
 
 /// Values and bounds on their errors.
 #[derive(Clone, Copy)]
-struct Bounded<S: Simd> {
-    value: f64x8<S>,
-    error: f64x8<S>,
+struct Bounded<F> {
+    value: F,
+    error: F,
 }
 
 #[inline(always)]
-fn determinant<S: Simd>(x: &[f64x8<S>; 3], y: &[f64x8<S>; 3], z: &[f64x8<S>; 3]) -> Bounded<S> {
+fn determinant<S: Simd, F: SimdFloat<S, Element = f64>>(x: &[F; 3], y: &[F; 3], z: &[F; 3]) -> Bounded<F> {
     let (p0, q0) = (y[1] * z[2], y[2] * z[1]);
     let (p1, q1) = (y[2] * z[0], y[0] * z[2]);
     let (p2, q2) = (y[0] * z[1], y[1] * z[0]);
@@ -34,10 +39,13 @@ fn between<S: Simd>(
     let volume = determinant(a, b, c);
     let area = u.value + v.value + w.value;
     let area_error = (u.error + v.error + w.error) * 1.01;
-    let quotient = volume.value / area;
-    let relative = volume.error / volume.value.abs() + area_error / (area.abs() - area_error) + 4.0 * U;
-    let (low, high) = (quotient * (-relative + 1.0), quotient * (relative + 1.0));
-    (low, high, area.abs().simd_gt(area_error * 2.0) & relative.simd_lt(1.0e-3))
+    let inverse = f64x8::splat(area.token(), 1.0) / area;
+    let quotient = volume.value * inverse;
+    let size = quotient.abs();
+    let error = (volume.error + size * area_error) * (inverse.abs() * WIDER) + size * (8.0 * U);
+    // Numbers of different signs may both become zero.
+    let known = area.abs().simd_gt(area_error * SURE) & error.simd_lt(size);
+    (quotient - error, quotient + error, known)
 }
 
 /// Where rays of these origins and directions hit the triangle if they do, and a bit for each of which this is known.
@@ -73,4 +81,25 @@ fn half<S: Simd>(
     let b = [splat(b.x) - origin[0], splat(b.y) - origin[1], splat(b.z) - origin[2]];
     let c = [splat(c.x) - origin[0], splat(c.y) - origin[1], splat(c.z) - origin[2]];
     between(&a, &b, &c, &direction)
+}
+
+/// The least and the greatest parameter at which a ray may hit a triangle if it does; none if next to nothing is known.
+///
+/// Of the corners `a`, `b` and `c` there are along each axis `b c a b`, then `c a b c`, so that each determinant has a lane; and `a` once
+/// more.
+#[inline(always)]
+pub(crate) fn range<S: Simd>(simd: S, [x, y, z]: [f32x8<S>; 3], a: [f32; 3], ray: &Ray) -> Option<[f32; 2]> {
+    let (origin, direction) = (ray.origin.to_array(), ray.direction.to_array());
+    let splat = |axis: usize| f64x4::splat(simd, f64::from(origin[axis]));
+    let [ox, oy, oz] = [splat(0), splat(1), splat(2)];
+    let (x, y, z) = (simd.widen_f32x8(x), simd.widen_f32x8(y), simd.widen_f32x8(z));
+    // The direction three times, then the corner.
+    let first = |axis: usize| {
+        let (d, a) = (f64::from(direction[axis]), f64::from(a[axis]) - f64::from(origin[axis]));
+        f64x4::load_array(simd, [d, d, d, a])
+    };
+    let Bounded { value, error } =
+        determinant(&[first(0), first(1), first(2)], &[x.0 - ox, y.0 - oy, z.0 - oz], &[x.1 - ox, y.1 - oy, z.1 - oz]);
+    let bounded = |lane: usize| shortcut::Bounded { value: value.as_array()[lane], error: error.as_array()[lane] };
+    shortcut::range([bounded(0), bounded(1), bounded(2)], bounded(3))
 }

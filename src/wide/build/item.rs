@@ -7,9 +7,6 @@ use crate::wide::hull::Hull;
 pub(super) struct Item(Hull);
 
 impl Item {
-    /// Where none stands yet.
-    pub(super) const NOTHING: Self = Self(Hull::EMPTY);
-
     /// The primitive of this number within `bounds`.
     #[inline(always)]
     pub(super) fn new(bounds: &Aabb, number: u32) -> Self {

@@ -65,23 +65,22 @@ pub(super) fn build<P: Primitives + Sync + ?Sized, B: Send>(
     options: &Options,
     monitor: &Monitor<'_, B>,
 ) -> Result<ControlFlow<B, Binary>, BuildError> {
-    let items = gather(primitives)?;
-    if items.is_empty() {
+    let count = primitives.len();
+    if count == 0 {
         return Ok(ControlFlow::Continue(Binary::default()));
     }
-    let count = primitives.len();
     let cuts = options.references > 1.0 && (0..count).any(|number| primitives.is_certified(number));
-    let size = if cuts { (f64::from(count) * f64::from(options.references.min(2.0))) as usize } else { items.len() };
+    let size = if cuts { (f64::from(count) * f64::from(options.references.min(2.0))) as usize } else { count as usize };
     // Cuts lead to fewer steps, but not always to less work: large primitives may be better off in one piece near the root.
     let both = cuts && options.reinsertions > 0;
-    let sizes = [Some(size), both.then_some(items.len())];
+    let sizes = [Some(size), both.then_some(count as usize)];
     for size in sizes.into_iter().flatten() {
         monitor.expect(size as u32 + options.reinsertions.saturating_mul(count / ROUND));
     }
     let growth = Growth { primitives, options, monitor };
     let mut best: Option<Binary> = None;
     for size in sizes.into_iter().flatten() {
-        let grown = match growth.grow(items.clone(), size) {
+        let grown = match growth.grow(gather(primitives, size)?) {
             ControlFlow::Continue(grown) => grown,
             ControlFlow::Break(reason) => return Ok(ControlFlow::Break(reason)),
         };
@@ -102,13 +101,12 @@ struct Growth<'g, P: ?Sized, B> {
 }
 
 impl<P: Primitives + Sync + ?Sized, B: Send> Growth<'_, P, B> {
-    /// The hierarchy over `items`, of at most `size` references; if nodes were put elsewhere, not in the order of a walk.
-    fn grow(&self, mut items: Vec<Item>, size: usize) -> ControlFlow<B, Binary> {
+    /// The hierarchy over `items`, of as many references at most as there are places; if nodes were put elsewhere, not in the order of a walk.
+    fn grow(&self, mut items: Vec<Item>) -> ControlFlow<B, Binary> {
         let &Self { primitives, options, monitor } = self;
-        let count = items.len();
-        let extent = extent(&items);
-        items.resize(size, Item::NOTHING);
-        let mut spare: Vec<Item> = bytemuck::zeroed_vec(size);
+        let count = primitives.len() as usize;
+        let extent = extent(&items[..count]);
+        let mut spare: Vec<Item> = bytemuck::zeroed_vec(items.len());
         let grower = Grower { primitives, options, whole: extent.hull, monitor };
         let task = Task { items: &mut items, count, spare: &mut spare, extent, levels: MAX_DEPTH };
         let mut grown = grower.grow(task)?.join();
@@ -128,10 +126,10 @@ fn cost(binary: &Binary) -> f64 {
     binary.nodes.iter().map(|node| f64::from(node.hull().weight(scale))).sum()
 }
 
-/// The boxes of all primitives.
-fn gather<P: Primitives + Sync + ?Sized>(primitives: &P) -> Result<Vec<Item>, BuildError> {
-    let mut items: Vec<Item> = bytemuck::zeroed_vec(primitives.len() as usize);
-    let chunks = items.par_chunks_mut(CHUNK).enumerate();
+/// The boxes of all primitives, in as many places as there may be references.
+fn gather<P: Primitives + Sync + ?Sized>(primitives: &P, size: usize) -> Result<Vec<Item>, BuildError> {
+    let mut items: Vec<Item> = bytemuck::zeroed_vec(size);
+    let chunks = items[..primitives.len() as usize].par_chunks_mut(CHUNK).enumerate();
     let bad = chunks.filter_map(|(chunk, items)| {
         let mut bad = None;
         for (number, item) in ((chunk * CHUNK) as u32..).zip(items) {

@@ -43,13 +43,13 @@ impl Options {
     /// A good deal of both: half as fast to build, and up to a quarter less work for rays where primitives differ in size.
     #[must_use]
     pub const fn balanced() -> Self {
-        Self { step_cost: 0.3, reinsertions: 4, reinserted: 0.05, ..Self::fast() }
+        Self { step_cost: 0.3, bins: 32, reinsertions: 4, reinserted: 0.05, ..Self::fast() }
     }
 
     /// The least work for rays: the better one of a hierarchy with cuts and one without.
     #[must_use]
     pub const fn best() -> Self {
-        Self { bins: 32, references: 1.3, ..Self::balanced() }
+        Self { references: 1.3, ..Self::balanced() }
     }
 }
 

@@ -1,5 +1,6 @@
-use std::{ops::Range, vec, vec::Vec};
+use std::{ops::Range, vec::Vec};
 
+use bytemuck::Zeroable;
 use rayon::prelude::*;
 
 use super::repeats::Repeats;
@@ -28,13 +29,16 @@ const TRIANGLE: f32 = 0.05;
 const ALONE: usize = 8192;
 
 /// What is known of the part below a binary node.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
 struct Part {
     /// The least costs as at most 1, 2, … 7 children of a wide node.
     costs: [f32; WIDTH - 1],
     /// How likely a ray that meets it is blocked in it.
     chance: f32,
-    /// The references, below bits that say how many corners a block of them has, none if it becomes none.
+    /// The first reference: depth first, so that all stand together.
+    first: u32,
+    /// How many there are, below bits that say how many corners a block of them has, none if it becomes none.
     references: u32,
 }
 
@@ -57,6 +61,11 @@ impl Part {
     fn references(&self) -> u32 {
         self.references & ((1 << Self::CORNERS) - 1)
     }
+
+    /// Which references there are.
+    fn range(&self) -> Range<usize> {
+        self.first as usize..(self.first + self.references()) as usize
+    }
 }
 
 impl<'b> Plan<'b> {
@@ -67,12 +76,12 @@ impl<'b> Plan<'b> {
         let numbers = binary.references.par_iter().with_min_len(ALONE);
         let triangles: Vec<Triangle> = numbers.map(|&number| triangle(number)).collect();
         let repeats = Repeats::of(&triangles);
-        let mut parts = vec![Part::default(); binary.nodes.len()];
+        let mut parts: Vec<Part> = bytemuck::zeroed_vec(binary.nodes.len());
         if let Some((root, below)) = parts.split_first_mut() {
             let whole = &binary.nodes[0];
             let price = price.max(0.0) * whole.hull().weight(scale) / binary.references.len() as f32;
             let planner = Planner { binary, triangles: &triangles, repeats: &repeats, scale, price };
-            *root = planner.part(whole, below, 1).0;
+            *root = planner.part(whole, below, 1);
         }
         Self { binary, triangles, repeats, parts, scale }
     }
@@ -125,14 +134,9 @@ impl<'b> Plan<'b> {
         children
     }
 
-    /// The references below a node: depth first, so that they stand together.
-    pub(super) fn range(&self, mut node: usize) -> Range<usize> {
-        let count = self.references(node) as usize;
-        while self.binary.nodes[node].count() == 0 {
-            node = self.binary.nodes[node].first();
-        }
-        let first = self.binary.nodes[node].first();
-        first..first + count
+    /// The references below a node.
+    pub(super) fn range(&self, node: usize) -> Range<usize> {
+        self.parts[node].range()
     }
 
     /// Those of a block that become triangles of it, by their places: one that was cut may be back in one piece.
@@ -179,21 +183,18 @@ impl Planner<'_> {
         e.cross(f).length() * 0.5
     }
 
-    /// What is to be known of a node, and the first reference below it; `below` are the nodes below it, of which the
-    /// first has the number `base`.
-    fn part(&self, node: &BinaryNode, below: &mut [Part], base: usize) -> (Part, usize) {
+    /// What is to be known of a node; `below` are the nodes below it, of which the first has the number `base`.
+    fn part(&self, node: &BinaryNode, below: &mut [Part], base: usize) -> Part {
         let weight = node.hull().weight(self.scale);
         if node.count() > 0 {
-            let range = node.first()..node.first() + node.count();
-            let count = self.repeats.count(range.clone());
-            let costs = [self.block_cost(weight, count, node.count() as u32); WIDTH - 1];
-            let surface: f32 = self.triangles[range].iter().map(|triangle| self.surface(triangle)).sum();
+            let mut part = Part { first: node.first() as u32, references: node.count() as u32, ..Part::zeroed() };
+            let corners = self.repeats.count(part.range());
+            part.costs = [self.block_cost(weight, corners, part.references); WIDTH - 1];
+            let surface: f32 = self.triangles[part.range()].iter().map(|triangle| self.surface(triangle)).sum();
             // Seen from all sides, a triangle's shadow is half its surface and a box's a quarter.
-            let chance = (surface / weight).min(1.0);
-            return (
-                Part { costs, chance, references: (count as u32) << Part::CORNERS | node.count() as u32 },
-                node.first(),
-            );
+            part.chance = (surface / weight).min(1.0);
+            part.references |= (corners as u32) << Part::CORNERS;
+            return part;
         }
         let nodes = &self.binary.nodes[base..][..2];
         let (pair, below) = below.split_at_mut(2);
@@ -204,17 +205,16 @@ impl Planner<'_> {
         let (of_left, of_right) = below.split_at_mut(border);
         let mut left = || self.part(&nodes[0], of_left, base);
         let mut right = || self.part(&nodes[1], of_right, base + border);
-        let ((left, first), (right, _)) = if together { rayon::join(left, right) } else { (left(), right()) };
+        let (left, right) = if together { rayon::join(left, right) } else { (left(), right()) };
         pair.copy_from_slice(&[left, right]);
         let references = left.references() + right.references();
         let passes =
             |node: &BinaryNode, part: &Part| 1.0 - (node.hull().weight(self.scale) / weight).min(1.0) * part.chance;
         let chance = 1.0 - passes(&nodes[0], &left) * passes(&nodes[1], &right);
-        let mut part = Part { costs: [0.0; WIDTH - 1], chance, references };
+        let mut part = Part { costs: [0.0; WIDTH - 1], chance, first: left.first, references };
         let sides = [&left.costs, &right.costs];
         part.costs[0] = weight * NODE + self.price * size_of::<Node>() as f32 + least(sides, WIDTH);
-        let corners =
-            if references > MOST { usize::MAX } else { self.repeats.count(first..first + references as usize) };
+        let corners = if references > MOST { usize::MAX } else { self.repeats.count(part.range()) };
         if corners <= WIDTH {
             let cost = self.block_cost(weight, corners, references);
             if cost <= part.costs[0] {
@@ -225,6 +225,6 @@ impl Planner<'_> {
         for places in 2..WIDTH {
             part.costs[places - 1] = part.costs[places - 2].min(least(sides, places));
         }
-        (part, first)
+        part
     }
 }

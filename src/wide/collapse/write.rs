@@ -34,7 +34,7 @@ impl Places<'_> {
     pub(super) fn write(self, plan: &Plan<'_>, sketch: &Sketch) {
         let mut words = self.words;
         for (node, sketched) in self.nodes.iter_mut().zip(&sketch.nodes) {
-            *node = Node::empty(Child::block(0, 1));
+            *node = Node::empty();
             for (place, &child) in sketched.children.iter().enumerate().rev() {
                 let named = sketched.named[place];
                 let bounds = &plan.binary.nodes[child].hull().bounds();

@@ -21,10 +21,10 @@ use super::{
     slabs::Slabs,
     stack::ROOM,
     tree::Tree,
-    walk::{self, Asker, Query},
+    walk::{self, Query},
 };
 use crate::{
-    geometry::{PreparedRay, Ray, ShearLanes, Wedge, parameters, slack},
+    geometry::{Ray, ShearLanes, Wedge, parameters, slack},
     primitives::{Hit, Sides, Span},
 };
 
@@ -54,18 +54,6 @@ pub(super) struct Packet<'p, S: Simd> {
     given: &'p [Ray],
     rays: Rays,
     stack: heapless::Vec<Waiting, ROOM>,
-}
-
-impl Asker for Ray {
-    #[inline(always)]
-    fn ray(&self) -> &Ray {
-        self
-    }
-
-    #[inline(always)]
-    fn prepared(&self, asked: impl FnOnce(&PreparedRay) -> Option<Hit>) -> Option<Hit> {
-        self.prepare().and_then(|ray| asked(&ray))
-    }
 }
 
 /// In how many rows there are rays.
@@ -191,8 +179,7 @@ impl<S: Simd> Packet<'_, S> {
                 let best = Hit { t: t.as_array()[lane], primitive: primitive.as_array()[lane] };
                 let span = Span::new(Hit { t: ray.t_min, primitive: 0 }, best);
                 let front = crossings.is_front(lane);
-                let hit = ray.prepared(|ray| tree.certify(block, triangle, front, ray, &span));
-                if let Some(hit) = hit {
+                if let Some(hit) = tree.certify(simd, (block, triangle), front, ray, &span) {
                     (t.as_mut_array()[lane], primitive.as_mut_array()[lane]) = (hit.t, hit.primitive);
                 }
             }

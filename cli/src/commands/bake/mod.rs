@@ -56,7 +56,7 @@ pub struct Bake {
     #[arg(long, conflicts_with = "lattice")]
     normals: bool,
     /// Store the corners of triangles where the structure's leaves want them, for the fewest instructions per ray: in 40 bytes
-    /// wherever a leaf names a triangle, about 230 a triangle under a fast kdtree
+    /// wherever a leaf names a triangle, around 200 a triangle under a fast kdtree
     #[arg(long, conflicts_with_all = ["target", "keep_numbers", "lattice", "normals", "textures", "fit"])]
     soup: bool,
     /// Store the materials' textures, of at most N pixels along a side (256 if not given), in at most 2 bytes a pixel and 4

@@ -33,15 +33,17 @@ fn plain<S: Caster>(scene: &S, camera: &Camera, tile: Tile, hits: &mut [Option<H
     }
 }
 
-/// The same of all pixels, at once.
+/// The same of all pixels at once, or else begun together; whether at once.
 #[inline(never)]
-fn tiled<S: Caster>(scene: &S, camera: &Camera, tile: Tile, hits: &mut ItemBuffer) {
-    if let Some(pencil) = camera.pencil(&tile, SIDE, SIDE) {
-        scene.closest_hits(&pencil, hits);
+fn tiled<S: Caster>(scene: &S, camera: &Camera, tile: Tile, items: &mut ItemBuffer, hits: &mut [Option<Hit>]) -> bool {
+    let at_once = camera.pencil(&tile, SIDE, SIDE).is_some_and(|pencil| scene.closest_hits(&pencil, items));
+    if !at_once {
+        begun(scene, camera, tile, 1, hits);
     }
+    at_once
 }
 
-/// The first ones, begun together.
+/// The same begun together.
 #[inline(never)]
 fn begun<S: Caster>(scene: &S, camera: &Camera, tile: Tile, stride: usize, hits: &mut [Option<Hit>]) {
     let entries = camera.bundle(&tile, SIDE, SIDE).map(|bundle| scene.enter(&bundle));
@@ -71,14 +73,18 @@ fn compare<S: Caster>(counter: &Counter, name: &str, scene: &S) -> bool {
     let camera = Camera::framing(&scene.bounds(), Vec3::new(0.2, 0.3, -1.0), Vec3::Y);
     let mut answers = [Answer::NONE; 2];
     let (mut alone, mut together, mut coarse, mut stack) = (0, 0, 0, 0);
-    let (mut hits, mut items) = ([None; 64], ItemBuffer::new());
+    let (mut items, mut hits) = (ItemBuffer::new(), [None; 64]);
     for tile in Tiles::new(SIDE, SIDE, 8, 8) {
         alone += counter.instructions(|| plain(scene, &camera, tile, &mut hits));
         hits.into_iter().for_each(|hit| answers[0].add(hit));
-        together += counter.instructions(|| tiled(scene, &camera, tile, &mut items));
-        (0..64).for_each(|i| answers[1].add(items.get(i % 8, i / 8)));
+        let mut at_once = false;
+        together += counter.instructions(|| at_once = tiled(scene, &camera, tile, &mut items, &mut hits));
+        if at_once {
+            (0..).zip(&mut hits).for_each(|(i, hit)| *hit = items.get(i % 8, i / 8));
+        }
+        hits.into_iter().for_each(|hit| answers[1].add(hit));
         if tile.x == tile.y {
-            stack = stack.max(stack_of(&mut || tiled(scene, &camera, tile, &mut items)));
+            stack = stack.max(stack_of(&mut || _ = tiled(scene, &camera, tile, &mut items, &mut hits)));
         }
     }
     for tile in Tiles::new(SIDE, SIDE, 64, 64) {

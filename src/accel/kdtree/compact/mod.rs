@@ -21,6 +21,7 @@ use super::{
     MAX_DEPTH, Options, Side, build,
     enter::{self, Opened, Planes},
     form::Form,
+    sweep::sweep,
 };
 use crate::{
     accel::{Accelerator, Cell, Entries, Entry, Hierarchy, Inside, Leaf, leaf::References},
@@ -108,6 +109,18 @@ impl<'a> CompactKdTree<'a> {
 }
 
 impl<'a, const HEIGHT: usize> CompactKdTree<'a, HEIGHT> {
+    /// What a node says to all rays of a bundle.
+    #[inline(always)]
+    fn opened(&self, node: u32) -> Option<Opened> {
+        Some(match kind(self.nodes, node)? {
+            Kind::Inner { axis, plane, left, right, empty } => {
+                let [begin, end] = [plane, plane + 1].map(|number| self.lattice.position(axis, number));
+                Opened::Parted { planes: Planes { axis, begin, end }, left, right, empty }
+            }
+            Kind::Leaf { count, .. } => Opened::Leaf { is_empty: count == 0 },
+        })
+    }
+
     /// The tree as words: what a file, flash, a GPU or a message holds.
     #[must_use]
     pub const fn as_words(&self) -> &'a [u32] {
@@ -151,15 +164,17 @@ impl<'a, const HEIGHT: usize> Accelerator for CompactKdTree<'a, HEIGHT> {
 
     /// One entry: a second one costs each ray more than it spares.
     fn enter(&self, bundle: &Bundle) -> Entries {
-        enter::entries(self.bounds, bundle, |node| {
-            Some(match kind(self.nodes, node)? {
-                Kind::Inner { axis, plane, left, right, empty } => {
-                    let [begin, end] = [plane, plane + 1].map(|number| self.lattice.position(axis, number));
-                    Opened::Parted { planes: Planes { axis, begin, end }, left, right, empty }
-                }
-                Kind::Leaf { count, .. } => Opened::Leaf { is_empty: count == 0 },
-            })
-        })
+        enter::entries(self.bounds, bundle, |node| self.opened(node))
+    }
+
+    fn sweep(&self, bundle: &Bundle, mut visit: impl FnMut(Leaf<'a>) -> f32) -> bool {
+        let visit = |node| match kind(self.nodes, node) {
+            Some(Kind::Leaf { first, count: 1, .. }) => visit(Leaf::of(References::IDENTITY, first, 1)),
+            Some(Kind::Leaf { first, count, .. }) => visit(Leaf::of(self.references, first, count)),
+            _ => f32::NEG_INFINITY,
+        };
+        sweep::<HEIGHT>(&self.bounds, bundle, |node| self.opened(node), visit);
+        true
     }
 
     #[inline]
