@@ -6,7 +6,7 @@ use super::{
     Coherence, Options, WideBvh,
     node::{CHILDREN, Child},
 };
-use crate::{List, Scene, geometry::Ray, primitives::Mesh, testing::Random};
+use crate::{accel::List, geometry::Ray, primitives::Mesh, scene::Scene, testing::Random};
 
 /// Hills of `side` x `side` x 2 triangles, some corners of which are moved.
 fn rough_hills(side: u32, size: f32) -> (Vec<Vec3>, Vec<[u32; 3]>) {

@@ -49,8 +49,8 @@ fn contestant(
 /// The knots under every plan, in the order of the leaves where there are no references.
 pub fn contest(out: &Path, small: bool) -> Result<String, Box<dyn Error>> {
     let mut code = "/// What `bench` compares.\npub static CONTEST: &[Contestant] = &[\n".to_string();
-    // All of it takes 3 MB of flash; a micro:bit has room for these over the smaller knot.
-    let few = ["grid small", "kdtree small", "bvh balanced", "dual-split balanced"];
+    // All of it takes 3 MB of flash; a micro:bit has room for these three over the smaller knot.
+    let few = ["grid small", "kdtree small", "dual-split balanced"];
     let knots = [("1k", (100, 5)), ("5k", (250, 10))];
     for (size, (along, around)) in knots.into_iter().take(if small { 1 } else { 2 }) {
         let (vertices, triangles) = knot::mesh(along, around);
