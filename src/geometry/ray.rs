@@ -1,3 +1,5 @@
+use core::hint::select_unpredictable;
+
 use glam::Vec3;
 
 use super::{Axis, MAX_COORDINATE};
@@ -190,15 +192,30 @@ pub(crate) struct Shear {
     pub(crate) inverse: f32,
 }
 
-/// One or the other; hosts, which cannot guess which axis is a ray's largest, without a branch.
+/// The axis of the largest of three magnitudes. On hosts, which cannot guess which it is, without a branch.
 #[inline(always)]
-fn either<T>(first: bool, one: T, other: T) -> T {
+fn longest([x, y, z]: [u32; 3]) -> (Axis, u32) {
     if cfg!(feature = "std") {
-        core::hint::select_unpredictable(first, one, other)
-    } else if first {
-        one
-    } else {
-        other
+        let (axis, largest) = select_unpredictable(y > x, (Axis::Y, y), (Axis::X, x));
+        return select_unpredictable(z > largest, (Axis::Z, z), (axis, largest));
+    }
+    match (y > x, z > if y > x { y } else { x }) {
+        (_, true) => (Axis::Z, z),
+        (true, false) => (Axis::Y, y),
+        (false, false) => (Axis::X, x),
+    }
+}
+
+/// The one of an axis, as little guessed.
+#[inline(always)]
+fn at(axis: Axis, [x, y, z]: [f32; 3]) -> f32 {
+    if cfg!(feature = "std") {
+        return select_unpredictable(axis == Axis::Z, z, select_unpredictable(axis == Axis::Y, y, x));
+    }
+    match axis {
+        Axis::X => x,
+        Axis::Y => y,
+        Axis::Z => z,
     }
 }
 
@@ -212,8 +229,7 @@ impl PreparedRay {
     pub(crate) fn here(ray: &Ray) -> Option<Self> {
         let (o, d) = (ray.origin, ray.direction);
         let (x, y, z) = (magnitude(d.x), magnitude(d.y), magnitude(d.z));
-        let (major, largest) = either(y > x, (Axis::Y, y), (Axis::X, x));
-        let (major, largest) = either(z > largest, (Axis::Z, z), (major, largest));
+        let (major, largest) = longest([x, y, z]);
         let (x, y, z) = (magnitude(o.x), magnitude(o.y), magnitude(o.z));
         let farthest = x.max(y).max(z);
         // Finite limits spare every primitive the question whether its `t` overflowed; NaN stays what it is.
@@ -228,8 +244,7 @@ impl PreparedRay {
         let x = AxisView::new(o.x, d.x, forward);
         let y = AxisView::new(o.y, d.y, forward);
         let z = AxisView::new(o.z, d.z, forward);
-        let inverse = either(major == Axis::Y, y.entry, x.entry);
-        let inverse = either(major == Axis::Z, z.entry, inverse);
+        let inverse = at(major, [x.entry, y.entry, z.entry]);
         let shear = Shear { major, slope: [d.x * inverse, d.y * inverse, d.z * inverse], inverse };
         let bit = |view: &AxisView, axis: Axis| view.entry.to_bits() >> 31 << axis as u32;
         let descending = (bit(&x, Axis::X) | bit(&y, Axis::Y) | bit(&z, Axis::Z)) * 0x1111_1111;
