@@ -74,6 +74,7 @@ fn walk<A: Accelerator>(structure: &A) {
     while let Some(leaf) = walk.next_leaf(&ray, float()) {
         black_box(leaf.last());
     }
+    structure.visit(&ray, float(), |leaf| black_box(leaf.last()).map(|_| float()));
     if let Some(bundle) = Bundle::around([*ray.ray(), *ray.ray()]) {
         black_box(structure.sweep(&bundle, |leaf| black_box(leaf.count() as f32)));
         let entries = structure.enter(&bundle);
