@@ -244,7 +244,7 @@ typedef struct {
     /**
      * Not for you.
      */
-    size_t opaque[71];
+    size_t opaque[106];
 } hitscan_scene;
 
 /**

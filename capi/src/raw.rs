@@ -116,18 +116,18 @@ pub struct Scene {
     /// Not for you.
     state: usize,
     /// Not for you.
-    opaque: [MaybeUninit<usize>; 71],
+    opaque: [MaybeUninit<usize>; 106],
 }
 
 /// The state of an open scene; whatever else it is, the scene is closed.
 const OPEN: usize = 0x7374_6968;
 
 // Room for the largest view, whatever features are on, so that the header is the same for all.
-const _: () = assert!(size_of::<View>() <= size_of::<[usize; 71]>() && align_of::<View>() <= align_of::<usize>());
+const _: () = assert!(size_of::<View>() <= size_of::<[usize; 106]>() && align_of::<View>() <= align_of::<usize>());
 
 impl Scene {
     /// A scene on which every query fails.
-    pub const CLOSED: Self = Self { state: 0, opaque: [MaybeUninit::uninit(); 71] };
+    pub const CLOSED: Self = Self { state: 0, opaque: [MaybeUninit::uninit(); 106] };
 
     /// The scene of this view.
     pub fn open(view: View) -> Self {
