@@ -120,3 +120,38 @@ fn rays_in_planes_of_boxes_find_what_is_there() {
         }
     }
 }
+
+#[test]
+fn hits_are_within_limits_to_the_last_bit() {
+    // Long, thin and near to where rays begin: single precision knows that they are hit, and about where.
+    let mut random = Random::new(3);
+    let mut roughly = 0;
+    for _ in 0..2000 {
+        let mut point = |size: f32| Vec3::new(random.signed(), random.signed(), random.signed()) * size;
+        let (a, along, aside) = (point(100.0), point(100.0), point(5.0));
+        let vertices = [a - along * 3.0, a + along * 3.0, a + aside];
+        let (inside, direction) = ((vertices[0] + vertices[1] + vertices[2]) / 3.0, point(1.0));
+        let wide = WideBvh::new(Mesh::new(&vertices, &[[0_u16, 1, 2]]).unwrap(), &Options::default()).unwrap();
+        let ray = Ray::new(inside - direction * 0.01, direction);
+        let Some(hit) = wide.closest_hit(&ray) else { continue };
+        roughly += 1;
+        for (ray, is_hit) in [
+            (ray, true),
+            (ray.up_to(hit.t), true),
+            (ray.up_to(hit.t.next_down()), false),
+            (ray.starting_at(hit.t), true),
+            (ray.starting_at(hit.t.next_up()), false),
+            (ray.starting_at(hit.t * 0.9).up_to(hit.t * 1.1), true),
+            (ray.starting_at(hit.t * 1.01).up_to(hit.t * 1.1), false),
+            (ray.starting_at(hit.t * 0.9).up_to(hit.t * 0.99), false),
+        ] {
+            assert_eq!(wide.any_hit(&ray), is_hit, "{ray:?}, {hit:?}");
+            for coherence in [Coherence::Coherent, Coherence::Incoherent] {
+                let (wide, mut hits) = (wide.clone().with_coherence(coherence), [false; 64]);
+                wide.any_hits(&[ray; 64], &mut hits);
+                assert!(hits.iter().all(|&hit| hit == is_hit), "{ray:?}, {hit:?}");
+            }
+        }
+    }
+    assert!(roughly > 1000, "{roughly}");
+}

@@ -1,3 +1,4 @@
+use core::cell::Cell;
 use std::vec::Vec;
 
 use fearless_simd::Simd;
@@ -16,6 +17,10 @@ pub(super) trait Asker {
     fn ray(&self) -> &Ray;
 
     fn prepared(&self) -> Option<PreparedRay>;
+
+    /// Hears of each block that the walk to the least hit looks at.
+    #[inline(always)]
+    fn count(&self) {}
 }
 
 impl Asker for PreparedRay {
@@ -39,6 +44,30 @@ impl Asker for Ray {
     #[inline(always)]
     fn prepared(&self) -> Option<PreparedRay> {
         self.prepare()
+    }
+}
+
+/// A ray that counts the blocks it looks at.
+#[derive(Debug)]
+pub(super) struct Counter {
+    pub ray: PreparedRay,
+    pub tested: Cell<usize>,
+}
+
+impl Asker for Counter {
+    #[inline(always)]
+    fn ray(&self) -> &Ray {
+        self.ray.ray()
+    }
+
+    #[inline(always)]
+    fn prepared(&self) -> Option<PreparedRay> {
+        Some(self.ray)
+    }
+
+    #[inline(always)]
+    fn count(&self) {
+        self.tested.set(self.tested.get() + 1);
     }
 }
 

@@ -1,5 +1,7 @@
 //! One ray's way through the tree.
 
+use core::cell::Cell;
+
 use fearless_simd::{Simd, SimdBase, f32x8};
 
 use super::{
@@ -7,7 +9,7 @@ use super::{
     node::{CHILDREN, Child, Node, WIDTH},
     slabs::{self, Met, Slabs, limit},
     stack::{Stack, Waiting},
-    tree::{Asker, Tree},
+    tree::{Asker, Counter, Tree},
 };
 use crate::{
     geometry::{PreparedRay, Ray, ShearLanes, beyond},
@@ -94,6 +96,41 @@ impl<S: Simd, R: Asker> Query<'_, S, R> {
             }
         }
     }
+
+    /// Whether there is a hit with a block's triangles not before the ray begins, and before `until`.
+    #[inline(always)]
+    pub(super) fn is_hit(&self, block: Block<'_>, until: Hit) -> bool {
+        let &Self { simd, tree, asker, ref shear } = self;
+        let possible = block.test(simd, shear);
+        let lanes = possible.lanes & block.lanes();
+        if lanes == 0 {
+            return false;
+        }
+        let from = Hit { t: asker.ray().t_min, primitive: 0 };
+        let limits = (f32x8::splat(simd, from.t), f32x8::splat(simd, until.t));
+        let crossings = shear.place(simd, &possible, lanes, limits);
+        // Wherever they are hit.
+        let mut within = crossings.proven | crossings.within;
+        if tree.sides == Sides::Front {
+            within &= crossings.front();
+        }
+        while within != 0 {
+            if tree.is_seen(block.number(lane(within)), asker.ray().mask) {
+                return true;
+            }
+            within &= within - 1;
+        }
+        let mut open = crossings.open;
+        while open != 0 {
+            let lane = lane(open);
+            open &= open - 1;
+            let (front, span) = (crossings.is_front(lane), Span::new(from, until));
+            if tree.certify(simd, (block, lane), front, asker, &span).is_some() {
+                return true;
+            }
+        }
+        false
+    }
 }
 
 /// The least hit of `ray`.
@@ -105,6 +142,17 @@ pub(super) fn closest<S: Simd>(simd: S, tree: &Tree, ray: &Ray) -> Option<Hit> {
     let query = Query { simd, tree, asker: ray, shear: ShearLanes::new(simd, ray) };
     let best = closest_below(&query, &slabs, tree.root?, end_of(ray));
     (best.primitive != u32::MAX).then_some(best)
+}
+
+/// How many blocks [`closest`] looks at.
+#[inline(always)]
+pub(super) fn tested<S: Simd>(simd: S, tree: &Tree, ray: &Ray) -> usize {
+    let (Some(ray), Some(root)) = (ray.prepare(), tree.root) else { return 0 };
+    let slabs = Slabs::new(simd, &ray, slabs::Sides::of(&ray, &tree.bounds));
+    let counter = Counter { ray, tested: Cell::new(0) };
+    let query = Query { simd, tree, asker: &counter, shear: ShearLanes::new(simd, &ray) };
+    closest_below(&query, &slabs, root, end_of(&ray));
+    counter.tested.get()
 }
 
 /// The least hit below `child` that comes before `best`, or that.
@@ -128,6 +176,7 @@ pub(super) fn closest_below<S: Simd, R: Asker>(
             }
         } else if let Some(block) = tree.block(child) {
             let before = best.t;
+            query.asker.count();
             query.improve(block, &mut best);
             if best.t < before {
                 end = limit(simd, best.t);
@@ -169,9 +218,7 @@ pub(super) fn any_below<S: Simd, R: Asker>(
                 continue;
             }
         } else if let Some(block) = tree.block(child) {
-            let mut best = until;
-            query.improve(block, &mut best);
-            if best.primitive != until.primitive {
+            if query.is_hit(block, until) {
                 return true;
             }
         }
