@@ -12,7 +12,7 @@ use crate::{
     primitives::{Hit, Sides, Span},
 };
 
-/// A ray as it was given, and as it is prepared where that is wanted.
+/// A ray as it was given, and as it is prepared where that is wanted: so seldom that who walks alone does not keep it.
 pub(super) trait Asker {
     fn ray(&self) -> &Ray;
 
@@ -50,19 +50,19 @@ impl Asker for Ray {
 /// A ray that counts the blocks it looks at.
 #[derive(Debug)]
 pub(super) struct Counter {
-    pub ray: PreparedRay,
+    pub ray: Ray,
     pub tested: Cell<usize>,
 }
 
 impl Asker for Counter {
     #[inline(always)]
     fn ray(&self) -> &Ray {
-        self.ray.ray()
+        &self.ray
     }
 
     #[inline(always)]
     fn prepared(&self) -> Option<PreparedRay> {
-        Some(self.ray)
+        self.ray.prepare()
     }
 
     #[inline(always)]

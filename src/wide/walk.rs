@@ -71,7 +71,7 @@ impl<S: Simd, R: Asker> Query<'_, S, R> {
         }
         let from = Hit { t: asker.ray().t_min, primitive: 0 };
         let limits = (f32x8::splat(simd, from.t), f32x8::splat(simd, best.t));
-        let crossings = shear.place(simd, &possible, lanes, limits);
+        let crossings = shear.place(simd, &possible, lanes, limits, false);
         let mut proven = crossings.proven;
         if tree.sides == Sides::Front {
             proven &= crossings.front();
@@ -108,9 +108,9 @@ impl<S: Simd, R: Asker> Query<'_, S, R> {
         }
         let from = Hit { t: asker.ray().t_min, primitive: 0 };
         let limits = (f32x8::splat(simd, from.t), f32x8::splat(simd, until.t));
-        let crossings = shear.place(simd, &possible, lanes, limits);
+        let crossings = shear.place(simd, &possible, lanes, limits, true);
         // Wherever they are hit.
-        let mut within = crossings.proven | crossings.within;
+        let mut within = crossings.proven | crossings.certain;
         if tree.sides == Sides::Front {
             within &= crossings.front();
         }
@@ -139,7 +139,7 @@ pub(super) fn closest<S: Simd>(simd: S, tree: &Tree, ray: &Ray) -> Option<Hit> {
     let prepared = PreparedRay::here(ray);
     let ray = prepared.as_ref()?;
     let slabs = Slabs::new(simd, ray, slabs::Sides::of(ray, &tree.bounds));
-    let query = Query { simd, tree, asker: ray, shear: ShearLanes::new(simd, ray) };
+    let query = Query { simd, tree, asker: ray.ray(), shear: ShearLanes::new(simd, ray) };
     let best = closest_below(&query, &slabs, tree.root?, end_of(ray));
     (best.primitive != u32::MAX).then_some(best)
 }
@@ -149,7 +149,7 @@ pub(super) fn closest<S: Simd>(simd: S, tree: &Tree, ray: &Ray) -> Option<Hit> {
 pub(super) fn tested<S: Simd>(simd: S, tree: &Tree, ray: &Ray) -> usize {
     let (Some(ray), Some(root)) = (ray.prepare(), tree.root) else { return 0 };
     let slabs = Slabs::new(simd, &ray, slabs::Sides::of(&ray, &tree.bounds));
-    let counter = Counter { ray, tested: Cell::new(0) };
+    let counter = Counter { ray: *ray.ray(), tested: Cell::new(0) };
     let query = Query { simd, tree, asker: &counter, shear: ShearLanes::new(simd, &ray) };
     closest_below(&query, &slabs, root, end_of(&ray));
     counter.tested.get()
@@ -194,7 +194,7 @@ pub(super) fn any<S: Simd>(simd: S, tree: &Tree, ray: &Ray) -> bool {
     let prepared = PreparedRay::here(ray);
     let (Some(ray), Some(root)) = (prepared.as_ref(), tree.root) else { return false };
     let slabs = Slabs::new(simd, ray, slabs::Sides::of(ray, &tree.bounds));
-    let query = Query { simd, tree, asker: ray, shear: ShearLanes::new(simd, ray) };
+    let query = Query { simd, tree, asker: ray.ray(), shear: ShearLanes::new(simd, ray) };
     any_below(&query, &slabs, root, end_of(ray))
 }
 

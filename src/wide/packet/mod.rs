@@ -142,11 +142,11 @@ impl<S: Simd> Packet<'_, S> {
             if lanes == 0 {
                 continue;
             }
-            let crossings = shear.place(simd, &possible, lanes, (t_min, t));
+            let crossings = shear.place(simd, &possible, lanes, (t_min, t), A::ANY);
             let (mut found, mut proven, mut open) = (crossings.t, crossings.proven, crossings.open);
             if A::ANY {
-                proven |= crossings.within;
-                open &= !crossings.within;
+                proven |= crossings.certain;
+                open &= !crossings.certain;
             }
             let decided = open & crossings.decided;
             if decided != 0 {
