@@ -59,7 +59,7 @@ impl Gait {
 /// Whether a few of the rays look at far fewer blocks if they walk alone: by distance, where by turns they have the order of their
 /// octant, which is a poor one among long and flat boxes around where they begin.
 #[inline(always)]
-fn is_better_alone<S: Simd>(simd: S, tree: &Tree, rays: &[Ray]) -> bool {
+pub(super) fn is_better_alone<S: Simd>(simd: S, tree: &Tree, rays: &[Ray]) -> bool {
     let sample: heapless::Vec<Ray, RUNNERS> =
         rays.iter().step_by(rays.len() / RUNNERS).take(RUNNERS).copied().collect();
     // Not by a closure, which has not the kernel's instructions.

@@ -1,9 +1,10 @@
 use std::{vec, vec::Vec};
 
+use fearless_simd::dispatch;
 use glam::Vec3;
 
 use super::{
-    Coherence, Options, WideBvh,
+    Coherence, Options, WideBvh, gait,
     node::{CHILDREN, Child},
 };
 use crate::{accel::List, geometry::Ray, primitives::Mesh, scene::Scene, testing::Random};
@@ -122,12 +123,47 @@ fn rays_in_planes_of_boxes_find_what_is_there() {
 }
 
 #[test]
+fn batches_walk_alone_where_octants_order_poorly() {
+    // Long and flat boxes around where rays begin: floors over each other, of strips across.
+    let mut random = Random::new(5);
+    let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
+    for strip in 0..400 {
+        let at = Vec3::new(0.0, (strip / 40) as f32 * 0.01, (strip % 40) as f32);
+        let first = vertices.len() as u32;
+        let along = if strip / 40 % 2 == 0 { (Vec3::X * 40.0, Vec3::Z) } else { (Vec3::X * 20.0, Vec3::Z * 3.0) };
+        vertices.extend([at, at + along.0, at + along.1, at + along.0 + along.1]);
+        triangles.extend([[first, first + 1, first + 2], [first + 1, first + 3, first + 2]]);
+    }
+    let mesh = Mesh::new(&vertices, &triangles[..]).unwrap();
+    let wide = WideBvh::new(mesh, &Options::best()).unwrap();
+    let mut unit = || random.unit();
+    let rays: Vec<Ray> = (0..2000)
+        .map(|_| {
+            let origin = Vec3::new(unit() * 40.0, unit() * 0.09, unit() * 40.0);
+            Ray::new(origin, Vec3::new(unit() - 0.5, unit() - 0.5, unit() - 0.5))
+        })
+        .collect();
+    let is_alone =
+        |wide: &WideBvh<Mesh<'_>>| dispatch!(wide.level, simd => gait::is_better_alone(simd, &wide.tree, &rays));
+    assert!(is_alone(&wide));
+    let (hills, faces) = rough_hills(40, 40.0);
+    assert!(!is_alone(&WideBvh::new(Mesh::new(&hills, &faces[..]).unwrap(), &Options::best()).unwrap()));
+    let list = Scene::new(List::new(&mesh).unwrap(), &mesh).unwrap();
+    for wide in [wide.clone(), wide.with_coherence(Coherence::Incoherent)] {
+        let mut hits = vec![None; rays.len()];
+        wide.closest_hits(&rays, &mut hits);
+        assert!(rays.iter().zip(&hits).all(|(ray, &hit)| hit == list.closest_hit(ray)));
+    }
+}
+
+#[test]
 fn hits_are_within_limits_to_the_last_bit() {
     // Long, thin and near to where rays begin: single precision knows that they are hit, and about where.
     let mut random = Random::new(3);
     let mut roughly = 0;
     for _ in 0..2000 {
-        let mut point = |size: f32| Vec3::new(random.signed(), random.signed(), random.signed()) * size;
+        let mut signed = || random.unit() * 2.0 - 1.0;
+        let mut point = |size: f32| Vec3::new(signed(), signed(), signed()) * size;
         let (a, along, aside) = (point(100.0), point(100.0), point(5.0));
         let vertices = [a - along * 3.0, a + along * 3.0, a + aside];
         let (inside, direction) = ((vertices[0] + vertices[1] + vertices[2]) / 3.0, point(1.0));

@@ -49,7 +49,7 @@ impl Options {
     /// The least work for rays: the better one of a hierarchy with cuts and one without.
     #[must_use]
     pub const fn best() -> Self {
-        Self { references: 1.3, reinsertions: 6, reinserted: 0.1, ..Self::balanced() }
+        Self { references: 1.3, ..Self::balanced() }
     }
 }
 
