@@ -8,8 +8,7 @@ use std::{vec, vec::Vec};
 use fearless_simd::{Bytes, Simd, SimdBase, f32x8, u32x8};
 
 use super::{
-    block::Block,
-    node::{CHILDREN, Child, Node, ORDERS, WIDTH},
+    node::{CHILDREN, Child, ORDERS, WIDTH},
     permute::permute,
     slabs::{Sides, Slabs, row},
     tree::Tree,
@@ -246,11 +245,7 @@ impl<S: Simd, A: Answers> Batch<'_, S, A> {
         let mut touched = 0;
         for &place in places.list.iter().take(places.len) {
             let Some(&Runner { child, .. }) = self.runners.get(usize::from(place)) else { break };
-            touched ^= if child.is_block() {
-                self.tree.block(child).map_or(0, Block::touch)
-            } else {
-                self.tree.nodes.get(child.0 as usize).map_or(0, Node::touch)
-            };
+            touched ^= self.tree.touch(child);
         }
         core::hint::black_box(touched);
     }

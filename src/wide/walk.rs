@@ -17,9 +17,9 @@ use crate::{
     query::end_of,
 };
 
-/// A node's children that are met, at least one: the one to go on with; the others wait.
+/// A node's children that are met, at least one: the one to go on with; the others wait, and come nearer meanwhile.
 #[inline(always)]
-fn descend<S: Simd>(node: &Node, met: &Met<S>, stack: &mut Stack) -> Child {
+fn descend<S: Simd>(tree: &Tree, node: &Node, met: &Met<S>, stack: &mut Stack) -> Child {
     let children = &node.rows[CHILDREN];
     let mut lanes = met.lanes;
     let first = lane(lanes);
@@ -32,6 +32,7 @@ fn descend<S: Simd>(node: &Node, met: &Met<S>, stack: &mut Stack) -> Child {
     let (a, b) = (waiting(first), waiting(lane(lanes)));
     let mut near = a.min(b);
     stack.push(a.max(b));
+    tree.touch_later(a.max(b).child());
     loop {
         lanes &= lanes.wrapping_sub(1);
         if lanes == 0 {
@@ -40,6 +41,7 @@ fn descend<S: Simd>(node: &Node, met: &Met<S>, stack: &mut Stack) -> Child {
         // Not a full order, but nearer ones come to lie above.
         let other = waiting(lane(lanes));
         stack.push(other.max(near));
+        tree.touch_later(other.max(near).child());
         stack.order();
         near = near.min(other);
     }
@@ -171,7 +173,7 @@ pub(super) fn closest_below<S: Simd, R: Asker>(
             let Some(node) = tree.nodes.get(child.0 as usize) else { break };
             let met = slabs.meet(simd, node, end);
             if met.lanes != 0 {
-                child = descend(node, &met, &mut stack);
+                child = descend(tree, node, &met, &mut stack);
                 continue;
             }
         } else if let Some(block) = tree.block(child) {
