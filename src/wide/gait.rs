@@ -60,8 +60,8 @@ impl Gait {
 /// octant, which is a poor one among long and flat boxes around where they begin.
 #[inline(always)]
 pub(super) fn is_better_alone<S: Simd>(simd: S, tree: &Tree, rays: &[Ray]) -> bool {
-    let sample: heapless::Vec<Ray, RUNNERS> =
-        rays.iter().step_by(rays.len() / RUNNERS).take(RUNNERS).copied().collect();
+    let step = (rays.len() / RUNNERS).max(1);
+    let sample: heapless::Vec<Ray, RUNNERS> = rays.iter().step_by(step).take(RUNNERS).copied().collect();
     // Not by a closure, which has not the kernel's instructions.
     let mut alone = 0;
     for ray in &sample {
@@ -77,11 +77,11 @@ pub(super) fn closest<S: Simd>(simd: S, tree: &Tree, coherence: Coherence, rays:
     let rays = rays.get(..hits.len()).unwrap_or(rays);
     let mut gait = Gait::of(tree, coherence, rays, Packet::<S>::PAYS);
     let measured = coherence == Coherence::Measured && rays.len() >= FEW && tree.bytes() < LARGE;
-    let sample = simd.vectorize(
+    let alone = simd.vectorize(
         #[inline(always)]
         || gait == Gait::ByTurns && measured && is_better_alone(simd, tree, rays),
     );
-    if sample {
+    if alone {
         gait = Gait::Alone;
     }
     if gait == Gait::Alone {
