@@ -236,7 +236,7 @@ fn descend_in_order(node: &Node, mut lanes: u32, stack: &mut Stack) -> Child {
     let first = lanes.checked_ilog2().unwrap_or(0);
     lanes ^= 1 << first;
     while lanes != 0 {
-        stack.push(Waiting::new(f32::NEG_INFINITY, children[lane(lanes)]));
+        stack.push(Waiting::new(0.0, children[lane(lanes)]));
         lanes &= lanes - 1;
     }
     Child(children[first as usize & (WIDTH - 1)])
