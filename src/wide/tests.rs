@@ -123,37 +123,25 @@ fn rays_in_planes_of_boxes_find_what_is_there() {
 }
 
 #[test]
-fn batches_walk_alone_where_octants_order_poorly() {
-    // Long and flat boxes around where rays begin: floors over each other, of strips across.
-    let mut random = Random::new(5);
-    let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
-    for strip in 0..400 {
-        let at = Vec3::new(0.0, (strip / 40) as f32 * 0.01, (strip % 40) as f32);
-        let first = vertices.len() as u32;
-        let along = if strip / 40 % 2 == 0 { (Vec3::X * 40.0, Vec3::Z) } else { (Vec3::X * 20.0, Vec3::Z * 3.0) };
-        vertices.extend([at, at + along.0, at + along.1, at + along.0 + along.1]);
-        triangles.extend([[first, first + 1, first + 2], [first + 1, first + 3, first + 2]]);
-    }
+fn a_sample_changes_no_answer() {
+    let (vertices, triangles) = rough_hills(40, 40.0);
     let mesh = Mesh::new(&vertices, &triangles[..]).unwrap();
-    let wide = WideBvh::new(mesh, &Options::best()).unwrap();
+    let wide = WideBvh::new(&mesh, &Options::best()).unwrap();
+    let mut random = Random::new(5);
     let mut unit = || random.unit();
     let rays: Vec<Ray> = (0..2000)
         .map(|_| {
-            let origin = Vec3::new(unit() * 40.0, unit() * 0.09, unit() * 40.0);
+            let origin = Vec3::new(unit() * 40.0, unit() * 3.0, unit() * 40.0);
             Ray::new(origin, Vec3::new(unit() - 0.5, unit() - 0.5, unit() - 0.5))
         })
         .collect();
-    let is_alone =
-        |wide: &WideBvh<Mesh<'_>>| dispatch!(wide.level, simd => gait::is_better_alone(simd, &wide.tree, &rays));
-    assert!(is_alone(&wide));
-    let (hills, faces) = rough_hills(40, 40.0);
-    assert!(!is_alone(&WideBvh::new(Mesh::new(&hills, &faces[..]).unwrap(), &Options::best()).unwrap()));
-    let list = Scene::new(List::new(&mesh).unwrap(), &mesh).unwrap();
-    for wide in [wide.clone(), wide.with_coherence(Coherence::Incoherent)] {
-        let mut hits = vec![None; rays.len()];
-        wide.closest_hits(&rays, &mut hits);
-        assert!(rays.iter().zip(&hits).all(|(ray, &hit)| hit == list.closest_hit(ray)));
+    // The boxes of hills hardly overlap, so that the octants' order is as good as that by distance; also of a few rays.
+    for rays in [&rays[..], &rays[..3], &[]] {
+        assert!(!dispatch!(wide.level, simd => gait::is_better_alone(simd, &wide.tree, rays)));
     }
+    let mut hits = vec![None; rays.len()];
+    wide.closest_hits(&rays, &mut hits);
+    assert!(rays.iter().zip(&hits).all(|(ray, &hit)| hit == wide.closest_hit(ray)));
 }
 
 #[test]
