@@ -219,10 +219,10 @@ pub(super) fn any_below<S: Simd, R: Asker>(
                 child = descend_in_order(node, lanes, &mut stack);
                 continue;
             }
-        } else if let Some(block) = tree.block(child) {
-            if query.is_hit(block, until) {
-                return true;
-            }
+        } else if let Some(block) = tree.block(child)
+            && query.is_hit(block, until)
+        {
+            return true;
         }
         let Some(next) = stack.pop(f32::INFINITY) else { return false };
         child = next;
