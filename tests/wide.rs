@@ -46,7 +46,8 @@ fn compare(simd: Simd, seed: u64, rays: usize) {
         let options = random.pick(&[Options::fast(), Options::balanced(), Options::best()]);
         let coherence = random.pick(&[Coherence::Measured, Coherence::Coherent, Coherence::Incoherent]);
         let wide = WideBvh::new(&mesh, &options).unwrap().with_simd(simd).with_coherence(coherence);
-        let rays: Vec<Ray> = (0..random.pick(&[1, 3, 8, 64, 1000]))
+        // The most are enough for a sample to be taken.
+        let rays: Vec<Ray> = (0..random.pick(&[1, 3, 8, 64, 1100]))
             .map(|_| {
                 let mask = random.pick(&[0, 1, 2, u32::MAX, u32::MAX, u32::MAX]);
                 adversarial_ray(&mut random, family, &vertices).seeing(mask)

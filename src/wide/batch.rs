@@ -8,14 +8,11 @@ use std::{vec, vec::Vec};
 use fearless_simd::{Bytes, Simd, SimdBase, f32x8, u32x8};
 
 use super::{
-    block::Block,
-    coherence::Coherence,
-    node::{CHILDREN, Child, Node, ORDERS, WIDTH},
-    packet::{self, Packet},
+    node::{CHILDREN, Child, ORDERS, WIDTH},
     permute::permute,
     slabs::{Sides, Slabs, row},
     tree::Tree,
-    walk::{self, Query},
+    walk::Query,
 };
 use crate::{
     geometry::{Aabb, PreparedRay, Ray, ShearLanes, beyond},
@@ -24,19 +21,7 @@ use crate::{
 };
 
 /// Rays that walk at a time.
-const RUNNERS: usize = 64;
-
-/// So few rays walk alone.
-const FEWEST: usize = 16;
-
-/// Bytes of a tree that does not fit into the nearer caches.
-const LARGE: usize = 16 << 20;
-
-/// The sine of the angle between neighbours that go together: 6 degrees.
-const CLOSE: f32 = 0.1;
-
-/// That in a large tree, a seventh of a degree: others soon part there, and then wait for memory one after the other.
-const CLOSE_IN_LARGE: f32 = 0.0025;
+pub(super) const RUNNERS: usize = 64;
 
 /// A ray on its way.
 #[derive(Clone, Copy)]
@@ -179,10 +164,15 @@ impl Runner {
     fn test<S: Simd, A: Answers>(&mut self, simd: S, tree: &Tree, waiting: &Waiting<'_>) -> bool {
         if let Some(block) = tree.block(self.child) {
             let query = Query { simd, tree, asker: &self.ray, shear: ShearLanes::new(simd, &self.ray) };
-            query.improve(block, &mut self.best);
-            self.behind = beyond(self.best.t);
+            if !A::ANY {
+                query.improve(block, &mut self.best);
+                self.behind = beyond(self.best.t);
+            } else if query.is_hit(block, self.best) {
+                self.best.primitive = 0;
+                return false;
+            }
         }
-        !(A::ANY && self.best.primitive != u32::MAX) && self.next(waiting, self.waiting)
+        self.next(waiting, self.waiting)
     }
 }
 
@@ -222,6 +212,8 @@ struct Batch<'b, S: Simd, A> {
     children: Vec<u32>,
     nodes: Places,
     blocks: Places,
+    /// How many blocks rays have looked at.
+    tested: usize,
 }
 
 impl<S: Simd, A: Answers> Batch<'_, S, A> {
@@ -253,11 +245,7 @@ impl<S: Simd, A: Answers> Batch<'_, S, A> {
         let mut touched = 0;
         for &place in places.list.iter().take(places.len) {
             let Some(&Runner { child, .. }) = self.runners.get(usize::from(place)) else { break };
-            touched ^= if child.is_block() {
-                self.tree.block(child).map_or(0, Block::touch)
-            } else {
-                self.tree.nodes.get(child.0 as usize).map_or(0, Node::touch)
-            };
+            touched ^= self.tree.touch(child);
         }
         core::hint::black_box(touched);
     }
@@ -272,6 +260,7 @@ impl<S: Simd, A: Answers> Batch<'_, S, A> {
             }
             let at_blocks = core::mem::replace(&mut self.blocks, Places::NONE);
             self.touch(&at_blocks);
+            self.tested += at_blocks.len;
             for &place in at_blocks.list.iter().take(at_blocks.len) {
                 self.step(place, true);
             }
@@ -279,12 +268,12 @@ impl<S: Simd, A: Answers> Batch<'_, S, A> {
     }
 }
 
-/// Asks all rays, some at a time.
+/// Asks all rays, some at a time; how many blocks they have looked at.
 #[inline(always)]
-fn run<S: Simd, A: Answers>(simd: S, tree: &Tree, rays: &[Ray], mut answers: A) {
+pub(super) fn run<S: Simd, A: Answers>(simd: S, tree: &Tree, rays: &[Ray], mut answers: A) -> usize {
     let Some(root) = tree.root else {
         (0..rays.len()).for_each(|index| answers.put(index, None));
-        return;
+        return 0;
     };
     let mut queue = Queue { rays, root, bounds: &tree.bounds, next: 0, answers };
     let mut runners = Vec::with_capacity(RUNNERS);
@@ -297,67 +286,7 @@ fn run<S: Simd, A: Answers>(simd: S, tree: &Tree, rays: &[Ray], mut answers: A) 
     }
     let room = tree.stack + WIDTH;
     let (enters, children) = (vec![0.0; room * runners.len()], vec![0; room * runners.len()]);
-    Batch { simd, tree, queue, runners, room, enters, children, nodes, blocks }.run();
-}
-
-/// How rays go.
-#[derive(PartialEq, Eq)]
-enum Gait {
-    /// One after the other.
-    Alone,
-    /// Some at a time, by turns.
-    ByTurns,
-    /// Neighbours together.
-    Together,
-}
-
-impl Gait {
-    /// That of these rays. Where neighbours go the same way but vectors are short, the processor guesses right what each will
-    /// meet, so that one after the other is fastest, unless the tree is so large that they wait for memory.
-    fn of(tree: &Tree, coherence: Coherence, rays: &[Ray], packets: bool) -> Self {
-        let is_large = tree.bytes() >= LARGE;
-        if rays.len() < FEWEST {
-            Self::Alone
-        } else if !coherence.is_found(rays, if is_large { CLOSE_IN_LARGE } else { CLOSE }) {
-            Self::ByTurns
-        } else if packets {
-            Self::Together
-        } else if is_large {
-            Self::ByTurns
-        } else {
-            Self::Alone
-        }
-    }
-}
-
-/// The least hits of `rays`.
-#[inline(always)]
-pub(super) fn closest<S: Simd>(simd: S, tree: &Tree, coherence: Coherence, rays: &[Ray], hits: &mut [Option<Hit>]) {
-    let rays = rays.get(..hits.len()).unwrap_or(rays);
-    let gait = Gait::of(tree, coherence, rays, Packet::<S>::PAYS);
-    if gait == Gait::Alone {
-        for (ray, hit) in rays.iter().zip(hits) {
-            *hit = walk::closest(simd, tree, ray);
-        }
-    } else if Packet::<S>::PAYS && gait == Gait::Together {
-        packet::run(simd, tree, rays, hits);
-    } else {
-        run(simd, tree, rays, hits);
-    }
-}
-
-/// Whether `rays` have hits.
-#[inline(always)]
-pub(super) fn any<S: Simd>(simd: S, tree: &Tree, coherence: Coherence, rays: &[Ray], hits: &mut [bool]) {
-    let rays = rays.get(..hits.len()).unwrap_or(rays);
-    let gait = Gait::of(tree, coherence, rays, Packet::<S>::PAYS);
-    if gait == Gait::Alone {
-        for (ray, hit) in rays.iter().zip(hits) {
-            *hit = walk::any(simd, tree, ray);
-        }
-    } else if Packet::<S>::PAYS && gait == Gait::Together {
-        packet::run(simd, tree, rays, hits);
-    } else {
-        run(simd, tree, rays, hits);
-    }
+    let mut batch = Batch { simd, tree, queue, runners, room, enters, children, nodes, blocks, tested: 0 };
+    batch.run();
+    batch.tested
 }

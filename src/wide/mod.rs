@@ -14,6 +14,7 @@ mod block;
 mod build;
 mod coherence;
 mod collapse;
+mod gait;
 mod hull;
 mod node;
 mod packet;
@@ -186,12 +187,12 @@ impl<P: Triangles> WideBvh<P> {
     /// while one waits for memory the others do not. Hand over some hundreds or thousands at a time, nearest neighbours next to
     /// each other: tiles of 8 by 8 rather than rows.
     pub fn closest_hits(&self, rays: &[Ray], hits: &mut [Option<Hit>]) {
-        dispatch!(self.level, simd => batch::closest(simd, &self.tree, self.coherence, rays, hits));
+        dispatch!(self.level, simd => gait::closest(simd, &self.tree, self.coherence, rays, hits));
     }
 
     /// Whether the rays hit anything, as far as there is room for it; see [`closest_hits`](Self::closest_hits).
     pub fn any_hits(&self, rays: &[Ray], hits: &mut [bool]) {
-        dispatch!(self.level, simd => batch::any(simd, &self.tree, self.coherence, rays, hits));
+        dispatch!(self.level, simd => gait::any(simd, &self.tree, self.coherence, rays, hits));
     }
 }
 

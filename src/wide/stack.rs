@@ -7,7 +7,9 @@ use super::{
 pub(super) const ROOM: usize = (WIDTH - 1) * MAX_DEPTH as usize + WIDTH;
 
 /// Children that wait.
+// Aligned so that the walk's frame is, too: vectors that are put aside there then do not straddle lines of the cache.
 #[derive(Debug)]
+#[repr(align(64))]
 pub(super) struct Stack(heapless::Vec<Waiting, ROOM>);
 
 /// A child and where it is entered, in the upper half, so that nearer ones are less where `t` is not negative; blocks before nodes

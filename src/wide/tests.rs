@@ -1,9 +1,10 @@
 use std::{vec, vec::Vec};
 
+use fearless_simd::dispatch;
 use glam::Vec3;
 
 use super::{
-    Coherence, Options, WideBvh,
+    Coherence, Options, WideBvh, gait,
     node::{CHILDREN, Child},
 };
 use crate::{accel::List, geometry::Ray, primitives::Mesh, scene::Scene, testing::Random};
@@ -119,4 +120,62 @@ fn rays_in_planes_of_boxes_find_what_is_there() {
             assert_eq!(wide.closest_hit(&ray), list.closest_hit(&ray), "{ray:?}");
         }
     }
+}
+
+#[test]
+fn a_sample_changes_no_answer() {
+    let (vertices, triangles) = rough_hills(40, 40.0);
+    let mesh = Mesh::new(&vertices, &triangles[..]).unwrap();
+    let wide = WideBvh::new(&mesh, &Options::best()).unwrap();
+    let mut random = Random::new(5);
+    let mut unit = || random.unit();
+    let rays: Vec<Ray> = (0..2000)
+        .map(|_| {
+            let origin = Vec3::new(unit() * 40.0, unit() * 3.0, unit() * 40.0);
+            Ray::new(origin, Vec3::new(unit() - 0.5, unit() - 0.5, unit() - 0.5))
+        })
+        .collect();
+    // The boxes of hills hardly overlap, so that the octants' order is as good as that by distance; also of a few rays.
+    for rays in [&rays[..], &rays[..3], &[]] {
+        assert!(!dispatch!(wide.level, simd => gait::is_better_alone(simd, &wide.tree, rays)));
+    }
+    let mut hits = vec![None; rays.len()];
+    wide.closest_hits(&rays, &mut hits);
+    assert!(rays.iter().zip(&hits).all(|(ray, &hit)| hit == wide.closest_hit(ray)));
+}
+
+#[test]
+fn hits_are_within_limits_to_the_last_bit() {
+    // Long, thin and near to where rays begin: single precision knows that they are hit, and about where.
+    let mut random = Random::new(3);
+    let mut roughly = 0;
+    for _ in 0..2000 {
+        let mut signed = || random.unit() * 2.0 - 1.0;
+        let mut point = |size: f32| Vec3::new(signed(), signed(), signed()) * size;
+        let (a, along, aside) = (point(100.0), point(100.0), point(5.0));
+        let vertices = [a - along * 3.0, a + along * 3.0, a + aside];
+        let (inside, direction) = ((vertices[0] + vertices[1] + vertices[2]) / 3.0, point(1.0));
+        let wide = WideBvh::new(Mesh::new(&vertices, &[[0_u16, 1, 2]]).unwrap(), &Options::default()).unwrap();
+        let ray = Ray::new(inside - direction * 0.01, direction);
+        let Some(hit) = wide.closest_hit(&ray) else { continue };
+        roughly += 1;
+        for (ray, is_hit) in [
+            (ray, true),
+            (ray.up_to(hit.t), true),
+            (ray.up_to(hit.t.next_down()), false),
+            (ray.starting_at(hit.t), true),
+            (ray.starting_at(hit.t.next_up()), false),
+            (ray.starting_at(hit.t * 0.9).up_to(hit.t * 1.1), true),
+            (ray.starting_at(hit.t * 1.01).up_to(hit.t * 1.1), false),
+            (ray.starting_at(hit.t * 0.9).up_to(hit.t * 0.99), false),
+        ] {
+            assert_eq!(wide.any_hit(&ray), is_hit, "{ray:?}, {hit:?}");
+            for coherence in [Coherence::Coherent, Coherence::Incoherent] {
+                let (wide, mut hits) = (wide.clone().with_coherence(coherence), [false; 64]);
+                wide.any_hits(&[ray; 64], &mut hits);
+                assert!(hits.iter().all(|&hit| hit == is_hit), "{ray:?}, {hit:?}");
+            }
+        }
+    }
+    assert!(roughly > 1000, "{roughly}");
 }

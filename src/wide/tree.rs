@@ -1,3 +1,4 @@
+use core::cell::Cell;
 use std::vec::Vec;
 
 use fearless_simd::Simd;
@@ -11,11 +12,18 @@ use crate::{
     primitives::{Hit, Sides, Span},
 };
 
-/// A ray as it was given, and as it is prepared where that is wanted.
+/// With so many nodes of 256 bytes a tree does not fit into the nearer caches.
+const MANY: usize = 16384;
+
+/// A ray as it was given, and as it is prepared where that is wanted: so seldom that who walks alone does not keep it.
 pub(super) trait Asker {
     fn ray(&self) -> &Ray;
 
     fn prepared(&self) -> Option<PreparedRay>;
+
+    /// Hears of each block that the walk to the least hit looks at.
+    #[inline(always)]
+    fn count(&self) {}
 }
 
 impl Asker for PreparedRay {
@@ -39,6 +47,30 @@ impl Asker for Ray {
     #[inline(always)]
     fn prepared(&self) -> Option<PreparedRay> {
         self.prepare()
+    }
+}
+
+/// A ray that counts the blocks it looks at.
+#[derive(Debug)]
+pub(super) struct Counter {
+    pub ray: Ray,
+    pub tested: Cell<usize>,
+}
+
+impl Asker for Counter {
+    #[inline(always)]
+    fn ray(&self) -> &Ray {
+        &self.ray
+    }
+
+    #[inline(always)]
+    fn prepared(&self) -> Option<PreparedRay> {
+        self.ray.prepare()
+    }
+
+    #[inline(always)]
+    fn count(&self) {
+        self.tested.set(self.tested.get() + 1);
     }
 }
 
@@ -76,6 +108,24 @@ impl Tree {
     pub(super) fn block(&self, child: Child) -> Option<Block<'_>> {
         let words = self.blocks.get(child.first()..)?.first_chunk()?;
         Some(Block::new(words, child.corners()))
+    }
+
+    /// Something of each line of the cache in which the child lies.
+    #[inline(always)]
+    pub(super) fn touch(&self, child: Child) -> u32 {
+        if child.is_block() {
+            self.block(child).map_or(0, Block::touch)
+        } else {
+            self.nodes.get(child.0 as usize).map_or(0, Node::touch)
+        }
+    }
+
+    /// Asks memory for a child that waits, if the tree is so large that it may be far away.
+    #[inline(always)]
+    pub(super) fn touch_later(&self, child: Child) {
+        if self.nodes.len() > MANY {
+            core::hint::black_box(self.touch(child));
+        }
     }
 
     /// Whether a ray of this mask sees the triangle of this number.

@@ -98,6 +98,8 @@ pub(crate) struct Crossings<F> {
     pub(crate) open: u32,
     /// A bit for each open one that is hit, and of a size at which no other scale is tried: the slow tiers come next.
     pub(crate) decided: u32,
+    /// A bit for each decided one that is hit within the limits, wherever that is; found out for any hits only.
+    pub(crate) certain: u32,
     /// A bit for each determinant above zero.
     positive: u32,
     backward: bool,
@@ -158,9 +160,17 @@ impl<S: Simd, F: Floats<S>> ShearLanes<S, F> {
         Possible { edges: [u, v, w], depths: [az, bz, cz], spread, bound, least, greatest, lanes }
     }
 
-    /// Where the triangles are hit between the limits; `lanes` are those that may be hit.
+    /// Where the triangles are hit between the limits; `lanes` are those that may be hit. With `any`, which of them are certainly hit
+    /// there, too.
     #[inline(always)]
-    pub(crate) fn place(&self, simd: S, possible: &Possible<F>, lanes: u32, (t_min, t_max): (F, F)) -> Crossings<F> {
+    pub(crate) fn place(
+        &self,
+        simd: S,
+        possible: &Possible<F>,
+        lanes: u32,
+        (t_min, t_max): (F, F),
+        any: bool,
+    ) -> Crossings<F> {
         let &Possible { edges: [u, v, w], depths: [az, bz, cz], spread, bound, least, greatest, .. } = possible;
         let determinant = (u + v) + w;
         let (e1, e2) = (bz - az, cz - az);
@@ -180,12 +190,17 @@ impl<S: Simd, F: Floats<S>> ShearLanes<S, F> {
         let within = t.simd_ge(t_min) & t.simd_le(t_max);
         let placed = hit & narrow & near & normal;
         let mut open = lanes & !placed.to_bitmask() as u32;
-        let mut decided = 0;
+        let (mut decided, mut certain) = (0, 0);
         if open != 0 {
             decided = (hit & area.simd_ge(SMALL_AREA) & area.simd_le(LARGE_AREA)).to_bitmask() as u32;
             let error = ((error * (8.0 * U) + 1.0e-36) / area + magnitude * (8.0 * U) + 1.0e-36) * self.inverse.abs();
             let error = error + 1.0e-36;
             let outside = (t + error).simd_lt(t_min) | (t - error).simd_gt(beyond_all(t_max));
+            if any {
+                // The slow tiers round a number between two others, so that it stays there.
+                let between = hit & narrow & (t - error).simd_ge(t_min) & (t + error).simd_le(t_max);
+                certain = between.to_bitmask() as u32 & decided & open;
+            }
             // A crossing lies between the corners' parameters along the major axis, with as much before it as behind.
             let (a, b, c) = (az * self.inverse, bz * self.inverse, cz * self.inverse);
             let (first, last) = (a.min(b).min(c), a.max(b).max(c));
@@ -194,7 +209,7 @@ impl<S: Simd, F: Floats<S>> ShearLanes<S, F> {
         }
         let positive = determinant.simd_gt(F::splat(simd, 0.0)).to_bitmask() as u32;
         let proven = (placed & within).to_bitmask() as u32 & lanes;
-        Crossings { t, proven, open, decided, positive, backward: self.backward }
+        Crossings { t, proven, open, decided, certain, positive, backward: self.backward }
     }
 }
 

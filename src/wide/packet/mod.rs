@@ -142,8 +142,12 @@ impl<S: Simd> Packet<'_, S> {
             if lanes == 0 {
                 continue;
             }
-            let crossings = shear.place(simd, &possible, lanes, (t_min, t));
+            let crossings = shear.place(simd, &possible, lanes, (t_min, t), A::ANY);
             let (mut found, mut proven, mut open) = (crossings.t, crossings.proven, crossings.open);
+            if A::ANY {
+                proven |= crossings.certain;
+                open &= !crossings.certain;
+            }
             let decided = open & crossings.decided;
             if decided != 0 {
                 let (exact, certain) = simd.vectorize(
@@ -220,7 +224,11 @@ impl<S: Simd> Packet<'_, S> {
                 left &= left - 1;
                 let mut best = self.rays.best(lane);
                 let Some(query) = self.query(group, lane) else { break };
-                query.improve(block, &mut best);
+                if !A::ANY {
+                    query.improve(block, &mut best);
+                } else if query.is_hit(block, best) {
+                    best.primitive = 0;
+                }
                 self.rays.set_best::<A>(lane, best);
             }
         }
