@@ -29,14 +29,6 @@ impl<'a> References<'a> {
         Self::Wide(words)
     }
 
-    /// Whether there are no words.
-    pub(crate) const fn is_identity(&self) -> bool {
-        match self {
-            Self::Narrow(halves) => halves.is_empty(),
-            Self::Wide(words) => words.is_empty(),
-        }
-    }
-
     /// The number behind a reference.
     #[inline(always)]
     pub(crate) fn get(&self, index: u32) -> u32 {

@@ -76,14 +76,13 @@ pub fn contest(out: &Path, small: bool) -> Result<String, Box<dyn Error>> {
         let (vertices, triangles) = knot::mesh(along, around);
         let mesh = Mesh::new(&vertices, triangles.as_slice())?;
         let answer = camera_answer(&Scene::new(List::new(&mesh)?, &mesh)?);
-        let order: Vec<u32> = (0..mesh.len()).collect();
         for (name, plan) in [
             ("kdtree-soup fast", Plan::KdTree(kdtree::Options::fast())),
             ("grid-soup fast", Plan::Grid(grid::Options::fast())),
         ] {
             let words = bake::build(&mesh, &plan)?;
             let structure = Structure::open(plan.kind().ok_or("every plan has a kind")?, &words)?;
-            let asset = Baker::new().soup(&mesh, &order).structure(structure).finish();
+            let asset = Baker::new().soup(&mesh).structure(structure).finish();
             code += &contestant(out, (size, name), (triangles.len(), words.len() * 4), asset, answer)?;
         }
     }

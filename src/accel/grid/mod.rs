@@ -12,7 +12,6 @@ mod line;
 mod met;
 mod open;
 mod options;
-mod order;
 mod resolution;
 mod sweep;
 mod traverse;

@@ -139,10 +139,7 @@ impl<'a> Grid<'a> {
         let (offsets, references) = rest.split_at_checked(number_words(entries.checked_add(1)?, narrow))?;
         let offsets = if narrow { References::narrow(offsets) } else { References::wide(offsets) };
         let narrow = narrow_references(header.primitives as usize);
-        // None where each is its own number.
-        let is_ordered = header.primitives == header.references && references.len() == count.div_ceil(4);
-        let words_of = if is_ordered { 0 } else { number_words(count, narrow) };
-        let (references, octants) = references.split_at_checked(words_of)?;
+        let (references, octants) = references.split_at_checked(number_words(count, narrow))?;
         if octants.len() != count.div_ceil(4) {
             return None;
         }
