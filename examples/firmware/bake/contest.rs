@@ -3,7 +3,7 @@
 use std::{error::Error, fs, path::Path};
 
 use hitscan::{
-    Mesh, Primitives, Scene,
+    Mesh, Scene,
     accel::{List, Plan, Structure},
     bake::{self, Baker},
     bvh, dualsplit, grid, kdtree, octree,
