@@ -8,8 +8,9 @@
 
 use super::{
     HEADER_WORDS, MAX_COUNT,
-    cells::{OFFSET, block_words, narrow_offsets, narrow_references, number_words, reference_words},
+    cells::{OFFSET, block_words, list_words, narrow_offsets, narrow_references, number_words, reference_words},
     cover::Frame,
+    met,
     open::Header,
     options::{Form, Options},
     resolution::resolution,
@@ -37,14 +38,23 @@ pub(super) const fn words(primitives: usize, options: &Options) -> usize {
         // The counts become the offsets.
         Form::Full if narrow => 0,
         Form::Octants => 0,
-        _ => number_words(cells + 1, narrow),
+        Form::Full | Form::Bitmask => number_words(cells + 1, narrow),
+        // Lists are packed beside what they are made of.
+        Form::Packed => {
+            let most = most_references(options.form, primitives, options.bytes(primitives));
+            number_words(cells + 1, narrow).saturating_add(reference_words(most, primitives))
+        }
     };
     body.saturating_add(scratch)
 }
 
 /// How many references certainly do not fit if there are more: a number takes two bytes or four, its octants take one.
 const fn most_references(form: Form, primitives: usize, bytes: usize) -> usize {
-    let most = bytes / if narrow_references(primitives) { 3 } else { 5 };
+    let most = match form {
+        Form::Packed => bytes / 2,
+        _ if narrow_references(primitives) => bytes / 3,
+        _ => bytes / 5,
+    };
     if matches!(form, Form::Octants) && most > OFFSET as usize { OFFSET as usize } else { most }
 }
 
@@ -69,7 +79,8 @@ pub(super) fn build<P: Primitives + ?Sized>(
     let frame = Frame::new(&bounds, resolution(&bounds, cells));
     let most = most_references(options.form, count as usize, allowed);
     let narrow = narrow_offsets(options.form, most);
-    let mut builder = Builder { primitives, options, allowed, most, narrow, bounds, words, frame, references: 0 };
+    let mut builder =
+        Builder { primitives, options, allowed, most, narrow, bounds, words, frame, references: 0, listed: 0 };
     // Without cuts to be made, counting is as quick as an estimate.
     let hopeless = options.clip && !builder.estimate(cells, 2);
     if hopeless || !builder.count(cells)? {
@@ -80,7 +91,7 @@ pub(super) fn build<P: Primitives + ?Sized>(
             *(if builder.estimate(cells as u32, 1) { &mut fits } else { &mut exceeds }) = cells;
         }
         while !builder.count(fits as u32)? {
-            fits = math::greatest(fits * 0.6, 1.0);
+            fits = math::greatest(fits * 0.85, 1.0);
         }
     }
     Ok(builder.finish())
@@ -98,6 +109,8 @@ struct Builder<'w, 'p, P: ?Sized> {
     words: &'w mut [u32],
     frame: Frame,
     references: usize,
+    /// Entries of all lists.
+    listed: usize,
 }
 
 impl<P: Primitives + ?Sized> Builder<'_, '_, P> {
@@ -123,11 +136,13 @@ impl<P: Primitives + ?Sized> Builder<'_, '_, P> {
             references = references.saturating_add(frame.estimate(&self.primitives.bounds(primitive), clip));
         }
         let occupied = frame.cells().min(references);
-        let size = size(self.options.form, primitives as usize, frame.cells(), occupied, references);
+        // Some entries are jumps.
+        let listed = if self.options.form == Form::Packed { references + references / 8 } else { references };
+        let size = size(self.options.form, primitives as usize, frame.cells(), occupied, listed);
         size.saturating_mul(4) <= self.allowed.saturating_mul(times)
     }
 
-    /// Counts the references of each of at most so many cells; whether the grid is then within the bytes allowed.
+    /// Counts and fills in the references of each of at most so many cells; whether the grid is then within the bytes allowed.
     fn count(&mut self, cells: u32) -> Result<bool, Full> {
         self.frame = Frame::new(&self.bounds, resolution(&self.bounds, cells));
         let (frame, clip, first, narrow) = (&self.frame, self.options.clip, self.table(), self.narrow);
@@ -153,22 +168,63 @@ impl<P: Primitives + ?Sized> Builder<'_, '_, P> {
             }
         }
         let occupied = (0..cells).filter(|&cell| get(table, cell, narrow) > 0).count();
-        let size = size(self.options.form, primitives, cells, occupied, references);
-        if size.saturating_mul(4) > self.allowed {
+        let fits =
+            |listed| size(self.options.form, primitives, cells, occupied, listed).saturating_mul(4) <= self.allowed;
+        if !fits(references) {
             return Ok(false);
         }
-        self.references = references;
         self.reserve(references)?;
-        Ok(true)
+        (self.references, self.listed) = (references, references);
+        self.fill();
+        if self.options.form != Form::Packed {
+            return Ok(true);
+        }
+        self.list();
+        let size = size(self.options.form, primitives, cells, occupied, self.listed);
+        if self.listed > self.most || size.saturating_mul(4) > self.allowed {
+            return Ok(false);
+        }
+        let (at_least, available) = (first + self.lists() + self.listed.div_ceil(2), self.words.len());
+        if at_least <= available { Ok(true) } else { Err(Full { at_least, available }) }
     }
 
-    /// Fills in the references and makes everything small; the length of all.
+    /// Where packed lists stand, after the table.
+    fn lists(&self) -> usize {
+        let references = reference_words(self.references, self.primitives.len() as usize);
+        number_words(self.frame.cells() + 1, self.narrow) + references
+    }
+
+    /// Packs the references of all cells behind them, as far as there is room; the table then says where the entries begin.
+    fn list(&mut self) {
+        let (narrow, first, lists, cells) = (self.narrow, self.table(), self.lists(), self.frame.cells());
+        let narrow_numbers = narrow_references(self.primitives.len() as usize);
+        let (_, body) = self.words.split_at_mut_checked(first).unwrap_or_default();
+        let (body, packed) = body.split_at_mut_checked(lists).unwrap_or_default();
+        let (table, references) = body.split_at_mut_checked(number_words(cells + 1, narrow)).unwrap_or_default();
+        let numbers = number_words(self.references, narrow_numbers);
+        let (mut listed, mut next) = (0, get(table, 0, narrow));
+        for cell in 0..cells {
+            let begin = next;
+            next = get(table, cell + 1, narrow);
+            set(table, cell, listed as u32, narrow);
+            let of_cell = (begin..next)
+                .map(|index| (get(references, index as usize, narrow_numbers), octants(references, numbers, index)));
+            met::pack(of_cell, |entry| {
+                set(packed, listed, entry, true);
+                listed += 1;
+            });
+        }
+        set(table, cells, listed as u32, narrow);
+        set(packed, listed, 0, true);
+        self.listed = listed;
+    }
+
+    /// Makes everything small; the length of all.
     fn finish(mut self) -> usize {
-        self.fill();
         let (entries, end) = self.pack();
         let header = Header {
             primitives: self.primitives.len(),
-            references: self.references as u32,
+            references: self.listed as u32,
             entries,
             form: self.options.form,
             resolution: self.frame.resolution,
@@ -212,7 +268,9 @@ impl<P: Primitives + ?Sized> Builder<'_, '_, P> {
     /// Writes the blocks, brings the offsets into their final form and the references behind them; how many offsets there
     /// are before the last, and the length of all.
     fn pack(&mut self) -> (u32, usize) {
-        let (counts, narrow) = (self.narrow, narrow_offsets(self.options.form, self.references));
+        let (counts, narrow) = (self.narrow, narrow_offsets(self.options.form, self.listed));
+        let is_packed = self.options.form == Form::Packed;
+        let lists = if is_packed { self.lists() } else { number_words(self.frame.cells() + 1, counts) };
         let (table, cells) = (self.table(), self.frame.cells());
         let (front, body) = self.words.split_at_mut_checked(table).unwrap_or_default();
         let (_, blocks) = front.split_at_mut_checked(HEADER_WORDS).unwrap_or_default();
@@ -224,7 +282,7 @@ impl<P: Primitives + ?Sized> Builder<'_, '_, P> {
         for cell in 0..cells {
             let begin = next;
             next = get(body, cell + 1, counts);
-            if self.options.form == Form::Bitmask {
+            if is_packed || self.options.form == Form::Bitmask {
                 if cell % 32 == 0 {
                     set(blocks, cell / 32 * 2, 0, false);
                     set(blocks, cell / 32 * 2 + 1, entries as u32, false);
@@ -249,13 +307,13 @@ impl<P: Primitives + ?Sized> Builder<'_, '_, P> {
             set(body, entries + 1, 0, narrow);
         }
 
-        let (from, to) = (number_words(cells + 1, counts), number_words(entries + 1, narrow));
-        let references = reference_words(self.references, self.primitives.len() as usize);
-        for index in 0..references {
-            let word = get(body, from + index, false);
+        let to = number_words(entries + 1, narrow);
+        let length = list_words(self.options.form, self.listed, self.primitives.len() as usize);
+        for index in 0..length {
+            let word = get(body, lists + index, false);
             set(body, to + index, word, false);
         }
-        (entries as u32, table + to + references)
+        (entries as u32, table + to + length)
     }
 }
 

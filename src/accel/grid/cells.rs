@@ -25,7 +25,7 @@ pub(super) const fn index([_, ny, nz]: [u32; 3], [x, y, z]: [u32; 3]) -> u32 {
 pub(super) const fn block_words(form: Form, cells: usize) -> usize {
     match form {
         Form::Full | Form::Octants => 0,
-        Form::Bitmask => cells.div_ceil(32).saturating_mul(2),
+        Form::Bitmask | Form::Packed => cells.div_ceil(32).saturating_mul(2),
     }
 }
 
@@ -47,16 +47,21 @@ pub(super) const fn narrow_references(primitives: usize) -> bool {
     primitives <= 1 << 16
 }
 
-/// Words of a whole grid.
-pub(super) const fn size(form: Form, primitives: usize, cells: usize, occupied: usize, references: usize) -> usize {
+/// Words of a whole grid whose lists have so many entries.
+pub(super) const fn size(form: Form, primitives: usize, cells: usize, occupied: usize, listed: usize) -> usize {
     let entries = match form {
         Form::Full | Form::Octants => cells,
-        Form::Bitmask => occupied,
+        Form::Bitmask | Form::Packed => occupied,
     };
-    let offsets = number_words(entries.saturating_add(1), narrow_offsets(form, references));
+    let offsets = number_words(entries.saturating_add(1), narrow_offsets(form, listed));
     (HEADER_WORDS + block_words(form, cells))
         .saturating_add(offsets)
-        .saturating_add(reference_words(references, primitives))
+        .saturating_add(list_words(form, listed, primitives))
+}
+
+/// Words of lists of so many entries.
+pub(super) const fn list_words(form: Form, listed: usize, primitives: usize) -> usize {
+    if matches!(form, Form::Packed) { listed.div_ceil(2) } else { reference_words(listed, primitives) }
 }
 
 /// Words of references with their octants.

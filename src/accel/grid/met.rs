@@ -1,12 +1,48 @@
-use crate::accel::leaf::References;
+use crate::accel::leaf::{References, SECOND_FIRST};
+
+/// What the cells of a grid name, cell by cell.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Lists<'a> {
+    /// Numbers, and for each a byte: in which octants of the cell the primitive is. Along x it counts 4, along y 2, along z 1.
+    Plain(References<'a>, &'a [u8]),
+    /// See [`pack`].
+    Packed(&'a [u16]),
+}
+
+/// The octants that an entry of a packed list cannot have: it is a jump, and what is to be added stands 8 bits higher, or
+/// more if further jumps follow.
+const JUMP: u32 = 0xff00;
+
+/// Gives `emit` a cell's primitives, which ascend, with their octants as entries of 16 bits: octants above what is added to
+/// the last number, which is 0 at first.
+pub(super) fn pack(references: impl Iterator<Item = (u32, u32)>, mut emit: impl FnMut(u32)) {
+    let mut last = 0;
+    for (number, octants) in references {
+        let step = number.wrapping_sub(last);
+        last = number;
+        for shift in [24, 16, 8] {
+            if step >> shift != 0 {
+                emit(JUMP | step >> shift & 0xff);
+            }
+        }
+        let step = step & 0xff;
+        if octants == 0xff {
+            emit(0xf000 | step);
+            emit(0x0f00);
+        } else {
+            emit(octants << 8 | step);
+        }
+    }
+}
 
 /// The primitives of a cell that are in an octant of it that the ray meets.
 #[derive(Clone, Copy, Debug)]
 pub struct Met<'a> {
     next: u32,
     end: u32,
-    references: References<'a>,
-    octants: &'a [u8],
+    lists: Lists<'a>,
+    /// The last number of a packed list.
+    number: u32,
     /// A bit per octant that the ray meets.
     on_the_way: u32,
 }
@@ -21,43 +57,20 @@ pub(super) fn octants_of(octants: &[u8], reference: u32) -> Option<u32> {
 }
 
 impl<'a> Met<'a> {
-    /// Those of the references from `first` up to `end` that share a bit with `on_the_way`.
+    /// Those of the entries from `first` up to `end` that share a bit with `on_the_way`.
     #[inline(always)]
-    pub(super) const fn new(
-        references: References<'a>,
-        octants: &'a [u8],
-        first: u32,
-        end: u32,
-        on_the_way: u32,
-    ) -> Self {
-        Self { next: first, end, references, octants, on_the_way }
+    pub(super) fn new(lists: Lists<'a>, first: u32, end: u32, on_the_way: u32) -> Self {
+        Self { next: first, end, lists, number: 0, on_the_way }
     }
 
-    /// Those of the references from `first` up to `end` that share a bit with `on_the_way`, if there are any.
+    /// The next entry of a packed list.
     #[inline(always)]
-    pub(super) fn of(
-        references: References<'a>,
-        octants: &'a [u8],
-        first: u32,
-        end: u32,
-        on_the_way: u32,
-    ) -> Option<Self> {
-        let mut met = Self::new(references, octants, first, end, on_the_way);
-        met.next = met.ahead()?;
-        Some(met)
-    }
-
-    /// The next reference, if there is one.
-    #[inline(always)]
-    fn ahead(&self) -> Option<u32> {
-        let mut next = self.next;
-        while next < self.end {
-            if octants_of(self.octants, next)? & self.on_the_way != 0 {
-                return Some(next);
-            }
-            next += 1;
+    fn entry(&self, list: &[u16]) -> Option<u32> {
+        if self.next < self.end {
+            list.get((self.next ^ SECOND_FIRST) as usize).map(|&entry| entry.into())
+        } else {
+            None
         }
-        None
     }
 }
 
@@ -66,8 +79,34 @@ impl Iterator for Met<'_> {
 
     #[inline(always)]
     fn next(&mut self) -> Option<u32> {
-        let index = self.ahead()?;
-        self.next = index + 1;
-        Some(self.references.get(index))
+        match self.lists {
+            Lists::Plain(references, octants) => {
+                while self.next < self.end {
+                    let index = self.next;
+                    self.next += 1;
+                    if octants_of(octants, index)? & self.on_the_way != 0 {
+                        return Some(references.get(index));
+                    }
+                }
+                None
+            }
+            Lists::Packed(list) => loop {
+                let entry = self.entry(list)?;
+                self.next += 1;
+                if entry >> 8 & self.on_the_way == 0 {
+                    self.number = self.number.wrapping_add(entry & 0xff);
+                } else if entry < JUMP {
+                    self.number = self.number.wrapping_add(entry & 0xff);
+                    return Some(self.number);
+                } else {
+                    let mut far = entry & 0xff;
+                    while let Some(entry) = self.entry(list).filter(|&entry| entry >= JUMP) {
+                        self.next += 1;
+                        far = far << 8 | entry & 0xff;
+                    }
+                    self.number = self.number.wrapping_add(far << 8);
+                }
+            },
+        }
     }
 }

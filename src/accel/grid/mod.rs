@@ -20,8 +20,8 @@ pub use met::Met;
 pub use options::{Form, Options};
 pub use traverse::GridTraversal;
 
-use self::{cells::Cells, course::Course};
-use super::{Accelerator, Cell, Hierarchy, Inside, Leaf, leaf::References};
+use self::{cells::Cells, course::Course, met::Lists};
+use super::{Accelerator, Cell, Hierarchy, Inside};
 use crate::{
     arena::Arena,
     asset::{Asset, Stored},
@@ -56,9 +56,7 @@ const MAX_COUNT: u32 = 1 << 28;
 pub struct Grid<'a> {
     words: &'a [u32],
     cells: Cells<'a>,
-    references: References<'a>,
-    /// A byte per reference: in which octants of the cell the primitive is. Along x it counts 4, along y 2, along z 1.
-    octants: &'a [u8],
+    lists: Lists<'a>,
     reference_count: u32,
     primitives: u32,
     resolution: [u32; 3],
@@ -99,8 +97,7 @@ impl<'a> Grid<'a> {
         Self {
             words: &[],
             cells: Cells::NONE,
-            references: References::IDENTITY,
-            octants: &[],
+            lists: Lists::Packed(&[]),
             reference_count: 0,
             primitives: 0,
             resolution: [1; 3],
@@ -122,7 +119,7 @@ impl<'a> Grid<'a> {
         self.resolution
     }
 
-    /// How many references its cells hold.
+    /// How many references its cells hold; of [`Form::Packed`], entries.
     #[must_use]
     pub const fn reference_count(&self) -> usize {
         self.reference_count as usize
@@ -161,14 +158,14 @@ pub struct Block {
 /// Blocks of cells, halved along their longest side until there is one cell.
 impl<'a> Hierarchy for Grid<'a> {
     type Node = Block;
-    type Leaf = Leaf<'a>;
+    type Leaf = Met<'a>;
 
     fn root(&self) -> Option<Cell<Block>> {
         let node = Block { first: [0; 3], count: self.resolution };
         (self.primitives > 0).then_some(Cell { bounds: self.bounds, node })
     }
 
-    fn open(&self, cell: &Cell<Block>) -> Inside<Block, Leaf<'a>> {
+    fn open(&self, cell: &Cell<Block>) -> Inside<Block, Met<'a>> {
         let Block { first: [x, y, z], count: [nx, ny, nz] } = cell.node;
         let axis = if nx >= ny && nx >= nz {
             Axis::X
@@ -184,7 +181,7 @@ impl<'a> Hierarchy for Grid<'a> {
         };
         if count <= 1 {
             let (first, count) = self.cells.of(cells::index(self.resolution, [x, y, z])).unwrap_or((0, 0));
-            return Inside::Leaf(Leaf::of(self.references, first, count));
+            return Inside::Leaf(Met::new(self.lists, first, first.saturating_add(count), 0xff));
         }
         let half = count / 2;
         let with = |first: u32, count: u32| match axis {

@@ -4,10 +4,10 @@ use glam::Vec3;
 
 use super::{
     Grid, HEADER_WORDS, MAX_COUNT, MAX_RESOLUTION,
-    cells::{Cells, OFFSET, block_words, narrow_offsets, narrow_references, number_words, reference_words},
+    cells::{Cells, OFFSET, block_words, list_words, narrow_offsets, narrow_references, number_words},
     course::Course,
     cover::Frame,
-    met::octants_of,
+    met::{Lists, Met, octants_of},
     options::Form,
 };
 use crate::{
@@ -19,6 +19,7 @@ use crate::{
 /// The header as it stands in the words.
 pub(super) struct Header {
     pub(super) primitives: u32,
+    /// Entries of all lists.
     pub(super) references: u32,
     /// Offsets before the last.
     pub(super) entries: u32,
@@ -36,6 +37,7 @@ impl Header {
             Form::Full => 0,
             Form::Bitmask => 1,
             Form::Octants => 2,
+            Form::Packed => 3,
         };
         [self.primitives, self.references, self.entries, form, nx, ny, nz, x0, y0, z0, x1, y1, z1]
     }
@@ -47,6 +49,7 @@ impl Header {
             0 => Form::Full,
             1 => Form::Bitmask,
             2 => Form::Octants,
+            3 => Form::Packed,
             _ => return Err((3, Reason::Header)),
         };
         let corner = |bits: [u32; 3]| Vec3::from_array(bits.map(f32::from_bits));
@@ -79,14 +82,18 @@ impl<'a> Grid<'a> {
         }
         let grid = Self::view(words).ok_or(malformed((0, Reason::Length)))?;
         grid.check_table(&header, frame.cells()).map_err(malformed)?;
-        let references =
-            words.len().saturating_sub(reference_words(header.references as usize, header.primitives as usize));
-        for index in 0..header.references {
-            if grid.references.get(index) >= header.primitives {
-                return Err(malformed((references, Reason::Primitive)));
+        let lists = list_words(header.form, header.references as usize, header.primitives as usize);
+        let is_sound = match grid.lists {
+            Lists::Plain(references, _) => {
+                (0..header.references).all(|index| references.get(index) < header.primitives)
             }
-        }
-        Ok(grid)
+            // Numbers are counted from the beginning of each list.
+            Lists::Packed(_) => (0..header.entries).all(|entry| {
+                let (first, end) = grid.cells.offsets.pair(entry).unwrap_or((0, 0));
+                Met::new(grid.lists, first, end, 0xff).all(|number| number < header.primitives)
+            }),
+        };
+        if is_sound { Ok(grid) } else { Err(malformed((words.len().saturating_sub(lists), Reason::Primitive))) }
     }
 
     /// One pass over blocks and offsets: ranks equal the occupied cells so far, and offsets never fall.
@@ -102,7 +109,7 @@ impl<'a> Grid<'a> {
             }
             rank += bits.count_ones();
         }
-        let entries = if header.form == Form::Bitmask { rank as usize } else { cells };
+        let entries = if self.cells.blocks.is_empty() { cells } else { rank as usize };
         if entries != header.entries as usize {
             return Err((2, Reason::Header));
         }
@@ -115,8 +122,8 @@ impl<'a> Grid<'a> {
             if first || last || offset < least || offset > header.references {
                 return Err((HEADER_WORDS + self.cells.blocks.len(), Reason::References));
             }
-            if header.form == Form::Octants {
-                let octants = (least..offset).fold(0, |all, index| all | octants_of(self.octants, index).unwrap_or(0));
+            if let (Form::Octants, Lists::Plain(_, octants)) = (header.form, self.lists) {
+                let octants = (least..offset).fold(0, |all, index| all | octants_of(octants, index).unwrap_or(0));
                 if octants != said {
                     return Err((HEADER_WORDS + entry as usize, Reason::References));
                 }
@@ -138,16 +145,21 @@ impl<'a> Grid<'a> {
         let narrow = narrow_offsets(header.form, count);
         let (offsets, references) = rest.split_at_checked(number_words(entries.checked_add(1)?, narrow))?;
         let offsets = if narrow { References::narrow(offsets) } else { References::wide(offsets) };
-        let narrow = narrow_references(header.primitives as usize);
-        let (references, octants) = references.split_at_checked(number_words(count, narrow))?;
-        if octants.len() != count.div_ceil(4) {
+        if references.len() != list_words(header.form, count, header.primitives as usize) {
             return None;
         }
+        let narrow = narrow_references(header.primitives as usize);
+        let lists = if header.form == Form::Packed {
+            Lists::Packed(bytemuck::must_cast_slice(references))
+        } else {
+            let (references, octants) = references.split_at_checked(number_words(count, narrow))?;
+            let references = if narrow { References::narrow(references) } else { References::wide(references) };
+            Lists::Plain(references, bytemuck::must_cast_slice(octants))
+        };
         Some(Self {
             words,
             cells: Cells { blocks, offsets, mask: if header.form == Form::Octants { OFFSET } else { u32::MAX } },
-            references: if narrow { References::narrow(references) } else { References::wide(references) },
-            octants: bytemuck::try_cast_slice(octants).ok()?,
+            lists,
             reference_count: header.references,
             primitives: header.primitives,
             resolution: header.resolution,

@@ -10,11 +10,14 @@ pub enum Form {
     Octants,
     /// A bit per cell, a count per 32 of them, and an offset per cell that is not empty.
     Bitmask,
+    /// The same, and 2 bytes in place of 3 to 5 for a reference to a primitive whose number is little above that of the last
+    /// one in the cell, 4 for others: a third fewer bytes. Building takes about twice the memory.
+    Packed,
 }
 
 impl Form {
     /// All of them.
-    pub const ALL: [Self; 3] = [Self::Full, Self::Octants, Self::Bitmask];
+    pub const ALL: [Self; 4] = [Self::Full, Self::Octants, Self::Bitmask, Self::Packed];
 }
 
 /// How a [`Grid`](super::Grid) is built: a preset, or one with knobs changed.
@@ -82,7 +85,7 @@ impl Options {
         let most = match self.form {
             Form::Full => bytes / 2,
             Form::Octants => bytes / 4,
-            Form::Bitmask => bytes.saturating_mul(4),
+            Form::Bitmask | Form::Packed => bytes.saturating_mul(4),
         };
         let most = if most > super::MAX_COUNT as usize { super::MAX_COUNT } else { most as u32 };
         if cells < 1 {
@@ -110,8 +113,14 @@ impl Options {
     /// The bytes of a single cell.
     pub(super) const fn least_bytes(&self, primitives: usize) -> usize {
         let occupied = if primitives > 0 { 1 } else { 0 };
-        super::build::size(self.form, primitives, 1, occupied, primitives).saturating_mul(4)
+        super::build::size(self.form, primitives, 1, occupied, most_listed(self.form, primitives)).saturating_mul(4)
     }
+}
+
+/// The most entries in a list of all primitives.
+const fn most_listed(form: Form, primitives: usize) -> usize {
+    // One after the other, their numbers need no jumps.
+    if matches!(form, Form::Packed) { primitives.saturating_mul(2) } else { primitives }
 }
 
 impl Default for Options {
