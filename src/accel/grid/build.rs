@@ -1,14 +1,14 @@
 //! The builder: count the references of each cell, sum the counts, and fill in the references from behind.
 //!
 //! ```text
-//! | header | blocks, if a bitmask | a count per cell, later where its references begin | references | octants |
+//! | header | blocks, if a bitmask | a count per cell, later where its references begin | references | octants | lists |
 //! ```
 //!
 //! At the end the offsets are made narrow, or fewer, where they stand, and the references moved up to them.
 
 use super::{
     HEADER_WORDS, MAX_COUNT,
-    cells::{OFFSET, block_words, list_words, narrow_offsets, narrow_references, number_words, reference_words},
+    cells::{OFFSET, block_words, group, list_words, narrow_offsets, narrow_references, number_words, reference_words},
     cover::Frame,
     met,
     open::Header,
@@ -34,27 +34,21 @@ pub(super) const fn words(primitives: usize, options: &Options) -> usize {
         bytes => bytes.div_ceil(4),
     };
     let narrow = narrow_offsets(options.form, most_references(options.form, primitives, options.bytes(primitives)));
+    let most = most_references(options.form, primitives, options.bytes(primitives));
     let scratch = match options.form {
         // The counts become the offsets.
         Form::Full if narrow => 0,
-        Form::Octants => 0,
-        Form::Full | Form::Bitmask => number_words(cells + 1, narrow),
+        Form::Full => number_words(cells + 1, narrow),
         // Lists are packed beside what they are made of.
-        Form::Packed => {
-            let most = most_references(options.form, primitives, options.bytes(primitives));
-            number_words(cells + 1, narrow).saturating_add(reference_words(most, primitives))
-        }
+        Form::Octants => reference_words(most, primitives),
+        Form::Bitmask => number_words(cells + 1, narrow).saturating_add(reference_words(most, primitives)),
     };
     body.saturating_add(scratch)
 }
 
-/// How many references certainly do not fit if there are more: a number takes two bytes or four, its octants take one.
+/// How many references certainly do not fit if there are more: an entry takes two bytes.
 const fn most_references(form: Form, primitives: usize, bytes: usize) -> usize {
-    let most = match form {
-        Form::Packed => bytes / 2,
-        _ if narrow_references(primitives) => bytes / 3,
-        _ => bytes / 5,
-    };
+    let most = bytes / (2 * group(form, primitives) as usize);
     if matches!(form, Form::Octants) && most > OFFSET as usize { OFFSET as usize } else { most }
 }
 
@@ -91,7 +85,7 @@ pub(super) fn build<P: Primitives + ?Sized>(
             *(if builder.estimate(cells as u32, 1) { &mut fits } else { &mut exceeds }) = cells;
         }
         while !builder.count(fits as u32)? {
-            fits = math::greatest(fits * 0.85, 1.0);
+            fits = math::greatest(fits * 0.6, 1.0);
         }
     }
     Ok(builder.finish())
@@ -121,10 +115,18 @@ impl<P: Primitives + ?Sized> Builder<'_, '_, P> {
 
     /// Makes sure that there is room for the table and so many references.
     fn reserve(&self, references: usize) -> Result<(), Full> {
-        let references = reference_words(references, self.primitives.len() as usize);
-        let at_least = self.table() + number_words(self.frame.cells() + 1, self.narrow) + references;
+        let at_least = self.table() + number_words(self.frame.cells() + 1, self.narrow) + self.unpacked(references);
         let available = self.words.len();
         if at_least <= available { Ok(()) } else { Err(Full { at_least, available }) }
+    }
+
+    /// Words of so many references as they are filled in.
+    fn unpacked(&self, references: usize) -> usize {
+        let primitives = self.primitives.len() as usize;
+        match self.options.form {
+            Form::Full => list_words(Form::Full, references, primitives),
+            Form::Octants | Form::Bitmask => reference_words(references, primitives),
+        }
     }
 
     /// Whether a grid of at most so many cells should be within so many times the bytes allowed.
@@ -137,7 +139,8 @@ impl<P: Primitives + ?Sized> Builder<'_, '_, P> {
         }
         let occupied = frame.cells().min(references);
         // Some entries are jumps.
-        let listed = if self.options.form == Form::Packed { references + references / 8 } else { references };
+        let jumps = if self.options.form == Form::Full { 0 } else { references / 8 };
+        let listed = references.saturating_add(jumps);
         let size = size(self.options.form, primitives as usize, frame.cells(), occupied, listed);
         size.saturating_mul(4) <= self.allowed.saturating_mul(times)
     }
@@ -176,7 +179,7 @@ impl<P: Primitives + ?Sized> Builder<'_, '_, P> {
         self.reserve(references)?;
         (self.references, self.listed) = (references, references);
         self.fill();
-        if self.options.form != Form::Packed {
+        if self.options.form == Form::Full {
             return Ok(true);
         }
         self.list();
@@ -188,10 +191,13 @@ impl<P: Primitives + ?Sized> Builder<'_, '_, P> {
         if at_least <= available { Ok(true) } else { Err(Full { at_least, available }) }
     }
 
-    /// Where packed lists stand, after the table.
+    /// Where the final lists stand, after the beginning of the table.
     fn lists(&self) -> usize {
-        let references = reference_words(self.references, self.primitives.len() as usize);
-        number_words(self.frame.cells() + 1, self.narrow) + references
+        let table = number_words(self.frame.cells() + 1, self.narrow);
+        match self.options.form {
+            Form::Full => table,
+            Form::Octants | Form::Bitmask => table + self.unpacked(self.references),
+        }
     }
 
     /// Packs the references of all cells behind them, as far as there is room; the table then says where the entries begin.
@@ -202,13 +208,16 @@ impl<P: Primitives + ?Sized> Builder<'_, '_, P> {
         let (body, packed) = body.split_at_mut_checked(lists).unwrap_or_default();
         let (table, references) = body.split_at_mut_checked(number_words(cells + 1, narrow)).unwrap_or_default();
         let numbers = number_words(self.references, narrow_numbers);
+        let has_octants = self.options.form == Form::Octants;
         let (mut listed, mut next) = (0, get(table, 0, narrow));
         for cell in 0..cells {
             let begin = next;
             next = get(table, cell + 1, narrow);
-            set(table, cell, listed as u32, narrow);
-            let of_cell = (begin..next)
-                .map(|index| (get(references, index as usize, narrow_numbers), octants(references, numbers, index)));
+            let reference =
+                |index| (get(references, index as usize, narrow_numbers), octants(references, numbers, index));
+            let of_cell = (begin..next).map(reference);
+            let octants = if has_octants { of_cell.clone().fold(0, |all, (_, octants)| all | octants) } else { 0 };
+            set(table, cell, octants << 24 | listed as u32, narrow);
             met::pack(of_cell, |entry| {
                 set(packed, listed, entry, true);
                 listed += 1;
@@ -224,7 +233,7 @@ impl<P: Primitives + ?Sized> Builder<'_, '_, P> {
         let (entries, end) = self.pack();
         let header = Header {
             primitives: self.primitives.len(),
-            references: self.listed as u32,
+            listed: self.listed as u32,
             entries,
             form: self.options.form,
             resolution: self.frame.resolution,
@@ -239,7 +248,8 @@ impl<P: Primitives + ?Sized> Builder<'_, '_, P> {
     /// Counts become ends and, reference by reference, beginnings.
     fn fill(&mut self) {
         let (frame, clip) = (&self.frame, self.options.clip);
-        let (narrow, narrow_numbers) = (self.narrow, narrow_references(self.primitives.len() as usize));
+        let (is_full, count) = (self.options.form == Form::Full, self.primitives.len() as usize);
+        let (narrow, narrow_numbers) = (self.narrow, narrow_references(count));
         let (first, cells) = (self.table(), frame.cells());
         let (_, body) = self.words.split_at_mut_checked(first).unwrap_or_default();
         let (table, references) = body.split_at_mut_checked(number_words(cells + 1, narrow)).unwrap_or_default();
@@ -248,17 +258,30 @@ impl<P: Primitives + ?Sized> Builder<'_, '_, P> {
             sum += get(table, cell, narrow);
             set(table, cell, sum, narrow);
         }
-        let used = reference_words(self.references, self.primitives.len() as usize);
+        let used = if is_full {
+            list_words(Form::Full, self.references, count)
+        } else {
+            reference_words(self.references, count)
+        };
         references.iter_mut().take(used).for_each(|word| *word = 0);
-        let numbers = number_words(self.references, narrow_numbers);
+        let numbers = if is_full { used } else { number_words(self.references, narrow_numbers) };
         let (references, octants) = references.split_at_mut_checked(numbers).unwrap_or_default();
+        let (jumps, group) = (met::jumps(count), group(Form::Full, count));
         for primitive in (0..self.primitives.len()).rev() {
             frame.cover(self.primitives, primitive, clip, |cell, bits| {
                 let end = get(table, cell as usize, narrow).wrapping_sub(1);
                 set(table, cell as usize, end, narrow);
-                set(references, end as usize, primitive, narrow_numbers);
-                if let Some(word) = octants.get_mut(end as usize / 4) {
-                    *word |= bits << (end % 4 * 8);
+                if is_full {
+                    let mut place = end.wrapping_mul(group) as usize;
+                    met::far(primitive, bits, jumps, |entry| {
+                        set(references, place, entry, true);
+                        place += 1;
+                    });
+                } else {
+                    set(references, end as usize, primitive, narrow_numbers);
+                    if let Some(word) = octants.get_mut(end as usize / 4) {
+                        *word |= bits << (end % 4 * 8);
+                    }
                 }
                 true
             });
@@ -269,20 +292,17 @@ impl<P: Primitives + ?Sized> Builder<'_, '_, P> {
     /// are before the last, and the length of all.
     fn pack(&mut self) -> (u32, usize) {
         let (counts, narrow) = (self.narrow, narrow_offsets(self.options.form, self.listed));
-        let is_packed = self.options.form == Form::Packed;
-        let lists = if is_packed { self.lists() } else { number_words(self.frame.cells() + 1, counts) };
+        let lists = self.lists();
         let (table, cells) = (self.table(), self.frame.cells());
         let (front, body) = self.words.split_at_mut_checked(table).unwrap_or_default();
         let (_, blocks) = front.split_at_mut_checked(HEADER_WORDS).unwrap_or_default();
         let mut entries = 0;
-        let numbers = number_words(self.references, narrow_references(self.primitives.len() as usize));
-        let numbers = number_words(cells + 1, counts) + numbers;
         // An entry never stands behind the cell that it is of, so that no offset is overwritten before it is read.
         let mut next = get(body, 0, counts);
         for cell in 0..cells {
             let begin = next;
             next = get(body, cell + 1, counts);
-            if is_packed || self.options.form == Form::Bitmask {
+            if self.options.form == Form::Bitmask {
                 if cell % 32 == 0 {
                     set(blocks, cell / 32 * 2, 0, false);
                     set(blocks, cell / 32 * 2 + 1, entries as u32, false);
@@ -294,11 +314,7 @@ impl<P: Primitives + ?Sized> Builder<'_, '_, P> {
                     *bits |= 1 << (cell % 32);
                 }
             }
-            let octants = match self.options.form {
-                Form::Octants => (begin..next).fold(0, |all, index| all | octants(body, numbers, index)),
-                _ => 0,
-            };
-            set(body, entries, octants << 24 | begin, narrow);
+            set(body, entries, begin, narrow);
             entries += 1;
         }
         set(body, entries, next, narrow);

@@ -1,7 +1,7 @@
 //! The uniform grid: space in equal cells, quick to build and the least work per ray where primitives lie evenly.
 //!
 //! One table and one list, without pointers, after Lagae and Dutré, *Compact, fast and robust grids for ray tracing*,
-//! 2008: cells are counted, the counts summed, and the references filled in from behind. A [`Grid`] is made by
+//! 2008: cells are counted, the counts summed, and the references filled in from behind; then they are packed ([`Met`]). A [`Grid`] is made by
 //! [`Grid::build`] or checked by [`Grid::open`]; after either, no walk can leave its words or fail to end.
 
 mod build;
@@ -20,7 +20,7 @@ pub use met::Met;
 pub use options::{Form, Options};
 pub use traverse::GridTraversal;
 
-use self::{cells::Cells, course::Course, met::Lists};
+use self::{cells::Cells, course::Course};
 use super::{Accelerator, Cell, Hierarchy, Inside};
 use crate::{
     arena::Arena,
@@ -56,7 +56,8 @@ const MAX_COUNT: u32 = 1 << 28;
 pub struct Grid<'a> {
     words: &'a [u32],
     cells: Cells<'a>,
-    lists: Lists<'a>,
+    /// Of all cells: see [`met`].
+    entries: &'a [u16],
     reference_count: u32,
     primitives: u32,
     resolution: [u32; 3],
@@ -97,7 +98,7 @@ impl<'a> Grid<'a> {
         Self {
             words: &[],
             cells: Cells::NONE,
-            lists: Lists::Packed(&[]),
+            entries: &[],
             reference_count: 0,
             primitives: 0,
             resolution: [1; 3],
@@ -119,7 +120,7 @@ impl<'a> Grid<'a> {
         self.resolution
     }
 
-    /// How many references its cells hold; of [`Form::Packed`], entries.
+    /// How many references its cells hold, or somewhat more: a number far above the last one in its cell counts twice.
     #[must_use]
     pub const fn reference_count(&self) -> usize {
         self.reference_count as usize
@@ -180,8 +181,8 @@ impl<'a> Hierarchy for Grid<'a> {
             Axis::Z => (z, nz),
         };
         if count <= 1 {
-            let (first, count) = self.cells.of(cells::index(self.resolution, [x, y, z])).unwrap_or((0, 0));
-            return Inside::Leaf(Met::new(self.lists, first, first.saturating_add(count), 0xff));
+            let (first, end) = self.cells.of(cells::index(self.resolution, [x, y, z])).unwrap_or((0, 0));
+            return Inside::Leaf(Met::new(self.entries, first, end, 0xff));
         }
         let half = count / 2;
         let with = |first: u32, count: u32| match axis {

@@ -2,22 +2,19 @@
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Form {
-    /// An offset per cell, 2 bytes, or 4 above 65,535 references: a hundredth faster without an instruction that counts
-    /// bits.
+    /// An offset per cell, 2 bytes, or 4 above 65,535 references, and 4 bytes a reference, or 6 above 16,384 primitives, where
+    /// other forms have little more than 2: needs no memory beside the grid to be built in.
     Full,
     /// A word per cell, an offset and which octants hold anything: a third less work for queries that do not pause. For less
     /// than 2^24 primitives and references.
     Octants,
     /// A bit per cell, a count per 32 of them, and an offset per cell that is not empty.
     Bitmask,
-    /// The same, and 2 bytes in place of 3 to 5 for a reference to a primitive whose number is little above that of the last
-    /// one in the cell, 4 for others: a third fewer bytes. Building takes about twice the memory.
-    Packed,
 }
 
 impl Form {
     /// All of them.
-    pub const ALL: [Self; 4] = [Self::Full, Self::Octants, Self::Bitmask, Self::Packed];
+    pub const ALL: [Self; 3] = [Self::Full, Self::Octants, Self::Bitmask];
 }
 
 /// How a [`Grid`](super::Grid) is built: a preset, or one with knobs changed.
@@ -85,7 +82,7 @@ impl Options {
         let most = match self.form {
             Form::Full => bytes / 2,
             Form::Octants => bytes / 4,
-            Form::Bitmask | Form::Packed => bytes.saturating_mul(4),
+            Form::Bitmask => bytes.saturating_mul(4),
         };
         let most = if most > super::MAX_COUNT as usize { super::MAX_COUNT } else { most as u32 };
         if cells < 1 {
@@ -113,14 +110,8 @@ impl Options {
     /// The bytes of a single cell.
     pub(super) const fn least_bytes(&self, primitives: usize) -> usize {
         let occupied = if primitives > 0 { 1 } else { 0 };
-        super::build::size(self.form, primitives, 1, occupied, most_listed(self.form, primitives)).saturating_mul(4)
+        super::build::size(self.form, primitives, 1, occupied, primitives).saturating_mul(4)
     }
-}
-
-/// The most entries in a list of all primitives.
-const fn most_listed(form: Form, primitives: usize) -> usize {
-    // One after the other, their numbers need no jumps.
-    if matches!(form, Form::Packed) { primitives.saturating_mul(2) } else { primitives }
 }
 
 impl Default for Options {

@@ -2,7 +2,7 @@ use super::{
     Grid,
     cells::Cells,
     line::{Line, Planes},
-    met::{Lists, Met},
+    met::Met,
 };
 use crate::{
     accel::{
@@ -23,7 +23,7 @@ use crate::{
 #[derive(Clone, Debug)]
 pub struct GridTraversal<'a> {
     cells: Cells<'a>,
-    lists: Lists<'a>,
+    entries: &'a [u16],
     lattice: Lattice,
     /// Where the walk is along each axis.
     lines: [Line; 3],
@@ -96,7 +96,7 @@ impl<'a> GridTraversal<'a> {
         };
         Self {
             cells: grid.cells,
-            lists: grid.lists,
+            entries: grid.entries,
             lattice: grid.lattice,
             lines: [x, y, z],
             enter,
@@ -242,8 +242,8 @@ impl<'a> GridTraversal<'a> {
                     *budget -= 1;
                 }
                 let cell = self.next_tied();
-                if let Some((first, count)) = self.cells.of(cell) {
-                    return Step::Leaf(Met::new(self.lists, first, first.saturating_add(count), 0xff));
+                if let Some((first, end)) = self.cells.of(cell) {
+                    return Step::Leaf(Met::new(self.entries, first, end, 0xff));
                 }
                 continue;
             }
@@ -261,10 +261,10 @@ impl<'a> GridTraversal<'a> {
                         }
                         *budget -= 1;
                     }
-                    if let Some((first, count)) = self.cells.of(at) {
+                    if let Some((first, end)) = self.cells.of(at) {
                         let octants = self.on_the_way(ray, enter, limit);
                         if octants != 0 {
-                            let met = Met::new(self.lists, first, first.saturating_add(count), octants);
+                            let met = Met::new(self.entries, first, end, octants);
                             break (Next::Plane, Some(Step::Leaf(met)));
                         }
                     }
