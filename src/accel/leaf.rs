@@ -60,7 +60,7 @@ impl References<'_> {
 }
 
 /// What turns around the halves of a word where its upper half comes first in memory.
-const SECOND_FIRST: u32 = cfg!(target_endian = "big") as u32;
+pub(crate) const SECOND_FIRST: u32 = cfg!(target_endian = "big") as u32;
 
 impl<'a> Leaf<'a> {
     /// `count` references from the one at `first`.

@@ -120,8 +120,8 @@ impl Kind {
     /// The version that this library writes, and the only one that it reads.
     pub(crate) const fn version(self) -> u32 {
         match self {
-            // The first had triangles in any order, each with its number.
-            Self::Soup => 2,
+            // The first had a number beside each triangle or reference.
+            Self::Soup | Self::Grid => 2,
             _ => 1,
         }
     }

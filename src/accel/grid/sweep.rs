@@ -272,9 +272,8 @@ impl<'a> Grid<'a> {
         visit: &mut impl FnMut(Met<'a>) -> Option<f32>,
     ) {
         let Some(sweep) = Sweep::of(&self.course, ray) else { return };
-        let is_done = sweep.run(table, t_max, |(first, end), octants| {
-            visit(Met::new(self.references, self.octants, first, end, octants))
-        });
+        let is_done =
+            sweep.run(table, t_max, |(first, end), octants| visit(Met::new(self.entries, first, end, octants)));
         if !is_done {
             self.walk(ray, t_max, visit);
         }
