@@ -32,7 +32,7 @@ fn plans() -> Vec<(&'static str, Plan)> {
 
 /// The finest grid within so many bytes.
 fn grid_within(mesh: &Mesh<'_>, bytes: usize) -> Plan {
-    let finer = (0..32).map(|step| grid::Options { density: 4.0 - 0.1 * step as f32, ..grid::Options::balanced() });
+    let finer = (0..8).map(|step| grid::Options { density: 3.0 - 0.25 * step as f32, ..grid::Options::balanced() });
     let fits = |plan: &Plan| bake::build(mesh, plan).is_ok_and(|words| words.len() * 4 <= bytes);
     finer.map(Plan::Grid).find(fits).unwrap_or(Plan::Grid(grid::Options::small()))
 }
