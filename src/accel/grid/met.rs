@@ -55,6 +55,8 @@ pub struct Met<'a> {
     /// The entries of all cells, or of those up to this one.
     entries: &'a [u16],
     next: u32,
+    /// Elsewhere the entries end there: a word less to be stored for each cell.
+    #[cfg(target_endian = "big")]
     end: u32,
     number: u32,
     /// A bit per octant that the ray meets, where entries have theirs: along x they count 4, along y 2, along z 1.
@@ -67,13 +69,21 @@ impl<'a> Met<'a> {
     pub(super) fn new(entries: &'a [u16], first: u32, end: u32, on_the_way: u32) -> Self {
         // One comparison is then enough for both ends.
         let entries = if SECOND_FIRST == 0 { entries.get(..end as usize).unwrap_or(&[]) } else { entries };
-        Self { entries, next: first, end, number: 0, on_the_way: on_the_way << 8 }
+        Self {
+            entries,
+            next: first,
+            #[cfg(target_endian = "big")]
+            end,
+            number: 0,
+            on_the_way: on_the_way << 8,
+        }
     }
 
     /// The next entry.
     #[inline(always)]
     fn entry(&self) -> Option<u32> {
-        if SECOND_FIRST != 0 && self.next >= self.end {
+        #[cfg(target_endian = "big")]
+        if self.next >= self.end {
             return None;
         }
         self.entries.get((self.next ^ SECOND_FIRST) as usize).map(|&entry| entry.into())
