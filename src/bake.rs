@@ -79,31 +79,6 @@ pub fn ordered(structure: &Structure<'_>) -> Option<(Vec<u32>, Vec<u32>)> {
     }
 }
 
-/// As [`ordered`], also of structures that divide space: leaves are ranges of places, and a primitive stands at several if
-/// several leaves name it. For a [`Soup`](crate::primitives::Soup); `None` where leaves cannot be ranges.
-///
-/// ```
-/// use hitscan::{Mesh, Primitives, Ray, Scene, accel::Plan, bake::{self, Baker}, asset::Asset, glam::Vec3, kdtree, KdTree};
-/// use hitscan::{accel::Structure, primitives::Soup};
-/// let vertices = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
-/// let mesh = Mesh::new(&vertices, &[[0_u16, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]])?;
-/// let words = bake::build(&mesh, &Plan::KdTree(kdtree::Options::fast()))?;
-///
-/// let (words, order) = bake::gathered(&Structure::KdTree(KdTree::open(&words)?)).unwrap();
-/// let asset = Baker::new().soup(&mesh, &order).structure(KdTree::open(&words)?).finish();
-/// let scene: Scene<KdTree, Soup> = Asset::from_words(&asset)?.scene()?;
-/// assert_eq!(scene.closest_hit(&Ray::new(Vec3::ONE, Vec3::NEG_ONE)).unwrap().primitive, 3);
-/// # Ok::<(), hitscan::Error>(())
-/// ```
-#[must_use]
-pub fn gathered(structure: &Structure<'_>) -> Option<(Vec<u32>, Vec<u32>)> {
-    match structure {
-        Structure::KdTree(tree) => Some((tree.ordered_words().collect(), tree.order().collect())),
-        Structure::Grid(grid) => Some((grid.ordered_words().collect(), grid.order().collect())),
-        _ => ordered(structure),
-    }
-}
-
 /// The corners of a mesh's triangles in another order, which names the triangles that exist.
 #[must_use]
 pub fn reorder<'a>(mesh: impl Into<Indices<'a>>, order: &[u32]) -> Vec<[u32; 3]> {
@@ -157,24 +132,14 @@ impl Baker {
         self.section(Kind::TexCoords, TexCoords::packed(coordinates).collect())
     }
 
-    /// The same with a [`Soup`](crate::primitives::Soup): at each place stands the triangle that `order` names, and every
-    /// triangle at one at least, as [`gathered`] gives it. Only the corners are kept.
+    /// The same with these triangles as a [`Soup`](crate::primitives::Soup): only the corners are kept.
     #[must_use]
-    pub fn soup<P: Triangles + ?Sized>(self, mesh: &P, order: &[u32]) -> Self {
-        let count = mesh.len();
-        let mut words = vec![0; count as usize + 1];
-        for (place, &number) in order.iter().enumerate() {
-            if let Some(slot) = words.get_mut(number as usize + 1) {
-                *slot = place as u32;
-            }
-        }
-        words[0] = count;
-        for &number in order {
-            let Triangle { a, b, c } = mesh.triangle(number);
-            words.extend([a, b, c].into_iter().flat_map(|corner| corner.to_array()).map(f32::to_bits));
-            words.push(number);
-        }
-        self.section(Kind::Soup, words)
+    pub fn soup<P: Triangles + ?Sized>(self, triangles: &P) -> Self {
+        let corners = (0..triangles.len()).flat_map(|index| {
+            let Triangle { a, b, c } = triangles.triangle(index);
+            [a, b, c].into_iter().flat_map(|corner| corner.to_array()).map(f32::to_bits)
+        });
+        self.section(Kind::Soup, corners.collect())
     }
 
     fn indices(self, indices: Indices<'_>, vertices: usize) -> Self {

@@ -82,8 +82,7 @@ fn assets() -> Vec<Vec<u32>> {
 
     for plan in [Plan::KdTree(kdtree::Options::fast()), Plan::Grid(grid::Options::fast())] {
         let words = bake::build(&mesh, &plan).unwrap();
-        let (words, order) = bake::gathered(&structure(&plan, &words)).unwrap();
-        assets.push(Baker::new().soup(&mesh, &order).structure(structure(&plan, &words)).finish());
+        assets.push(Baker::new().soup(&mesh).structure(structure(&plan, &words)).finish());
     }
 
     let both = (mesh, Spheres::new(&spheres).unwrap());

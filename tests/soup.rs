@@ -1,19 +1,19 @@
-//! Triangles that stand where the leaves want them answer with the bits and the numbers of the mesh they came from.
+//! Triangles with corners of their own answer with the bits of the mesh they came from.
 #![cfg(feature = "alloc")]
 #![allow(missing_docs)]
 
 mod common;
 
-use common::{FAMILIES, Random, adversarial_mesh, adversarial_ray, bits, rays};
+use common::{FAMILIES, Random, adversarial_mesh, adversarial_ray, bits, rays, seal::sealed};
 use hitscan::{
-    Error, Hit, List, Mesh, Primitives, Scene,
+    Hit, List, Mesh, Scene,
     accel::{Plan, Structure},
-    asset::Asset,
+    asset::{Asset, AssetError, Kind},
     bake::{self, Baker},
     bvh, dualsplit,
     glam::Vec3,
     grid, kdtree,
-    primitives::{Facet, MeshError, OrderError, Sides, Soup},
+    primitives::{MeshError, Sides, Soup},
     query::Progress,
 };
 
@@ -35,8 +35,7 @@ fn open<'a>(plan: &Plan, words: &'a [u32]) -> Structure<'a> {
 /// An asset of the soup of a mesh with its structure.
 fn baked(mesh: &Mesh<'_>, plan: &Plan) -> Vec<u32> {
     let words = bake::build(mesh, plan).unwrap();
-    let (words, order) = bake::gathered(&open(plan, &words)).unwrap();
-    Baker::new().soup(mesh, &order).structure(open(plan, &words)).finish()
+    Baker::new().soup(mesh).structure(open(plan, &words)).finish()
 }
 
 #[test]
@@ -52,7 +51,6 @@ fn a_soup_answers_as_its_mesh() {
         for plan in plans() {
             let asset = baked(&mesh, &plan);
             let scene: Scene<Structure, Soup> = Asset::from_words(&asset).unwrap().scene().unwrap();
-            assert_eq!(scene.primitives().numbers(), mesh.len());
             for _ in 0..500 {
                 let ray = adversarial_ray(&mut random, family, &vertices);
                 let hit = list.closest_hit(&ray);
@@ -90,61 +88,35 @@ fn the_nearest_triangle_is_that_of_the_mesh() {
     }
 }
 
-/// Each triangle is somewhere, in a tree as often as its leaves name it, and nothing but the references is gone.
-#[test]
-fn ordered_structures_hold_no_references() {
-    let mut random = Random::new(83);
-    let (vertices, triangles) = adversarial_mesh(&mut random, 2, 200);
-    let mesh = Mesh::new(&vertices, &triangles[..]).unwrap();
-    for plan in plans() {
-        let words = bake::build(&mesh, &plan).unwrap();
-        let (ordered, order) = bake::gathered(&open(&plan, &words)).unwrap();
-        assert!(ordered.len() < words.len(), "{plan:?}");
-        assert!((0..mesh.len()).all(|number| order.contains(&number)), "{plan:?}");
-        assert_eq!(open(&plan, &ordered).as_words(), ordered);
-        // What is ordered already stays as it is, over its own places.
-        let (again, places) = bake::gathered(&open(&plan, &ordered)).unwrap();
-        assert!(again == ordered && places.iter().copied().eq(0..order.len() as u32), "{plan:?}");
-        match (open(&plan, &words), open(&plan, &ordered)) {
-            (Structure::KdTree(tree), Structure::KdTree(ordered)) => {
-                assert!(!tree.is_ordered() && ordered.is_ordered() && order.len() >= tree.reference_count());
-            }
-            (Structure::Grid(grid), Structure::Grid(ordered)) => {
-                assert!(!grid.is_ordered() && ordered.is_ordered() && order.len() == grid.reference_count());
-            }
-            _ => assert_eq!(order.len() as u32, mesh.len()),
-        }
-    }
-    let list = bake::gathered(&Structure::List(List::new(&mesh).unwrap()));
-    assert!(list.is_none());
-}
-
 #[test]
 fn what_is_no_soup_is_refused() {
-    let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
-    let facets = [1, 0, 1].map(|number| Facet { corners, number });
-    assert!(Soup::new(&facets, &[1, 0]).is_ok() && Soup::new(&facets, &[1, 2]).is_ok());
-    assert!(Soup::new(&[], &[]).is_ok_and(|soup| soup.is_empty()));
-    let order = |places: &[u32]| match Soup::new(&facets, places) {
-        Err(Error::Order(OrderError { place })) => Some(place),
-        _ => None,
-    };
-    // The places of other triangles, of none, of too few and too many.
-    assert_eq!(order(&[0, 1]), Some(0));
-    assert_eq!(order(&[1, 3]), Some(3));
-    assert_eq!(order(&[1]), Some(0));
-    assert_eq!(order(&[1, 0, 2]), Some(2));
-    let mut bad = facets;
-    bad[2].corners[1][2] = f32::NAN;
-    let error = Soup::new(&bad, &[1, 0]).unwrap_err();
-    assert_eq!(error, Error::Mesh(MeshError::Vertex { triangle: 2, vertex: 1 }));
+    let mut triangles = [[Vec3::ZERO, Vec3::X, Vec3::Y]; 3];
+    assert!(Soup::new(&triangles).is_ok() && Soup::new(&[]).is_ok());
+    triangles[2][1].z = f32::NAN;
+    assert_eq!(Soup::new(&triangles).unwrap_err(), MeshError::Vertex { triangle: 2, vertex: 1 });
+}
+
+/// An asset may hold any words of the right number, but none of the version that had a number beside each triangle.
+#[test]
+fn other_words_are_no_soup() {
+    let soup = Soup::new(&[[Vec3::ZERO, Vec3::X, Vec3::Y]]).unwrap();
+    let mut words = Baker::new().soup(&soup).finish();
+    assert_eq!(Asset::from_words(&words).unwrap().read::<Soup>().unwrap().triangles(), soup.triangles());
+    let entry = words.iter().position(|&word| word == u32::from_le_bytes(*b"soup")).unwrap();
+    let read = |words: &[u32]| Asset::from_words(&sealed(words.to_vec()))?.read::<Soup>().map(|_| ());
+    let mut short = words.clone();
+    short.pop();
+    (short[3], short[entry + 3]) = (short.len() as u32, 8);
+    assert_eq!(read(&short), Err(AssetError::Shape { kind: Kind::Soup, words: 8 }.into()));
+    words[entry + 1] = 1;
+    let old = AssetError::Version { kind: Some(Kind::Soup), found: 1, supported: 2 };
+    assert_eq!(read(&words), Err(old.into()));
 }
 
 #[test]
 fn a_soup_is_hit_from_its_sides() {
-    let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
-    let facets = [Facet { corners, number: 0 }];
-    let soup = Soup::new(&facets, &[0]).unwrap();
+    let triangles = [[Vec3::ZERO, Vec3::X, Vec3::Y]];
+    let soup = Soup::new(&triangles).unwrap();
     let hits = |soup: Soup<'_>, z: f32| {
         let ray = hitscan::Ray::new(Vec3::new(0.2, 0.2, z), Vec3::Z * -z);
         Scene::new(List::new(&soup).unwrap(), soup).unwrap().closest_hit(&ray)

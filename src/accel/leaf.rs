@@ -29,14 +29,6 @@ impl<'a> References<'a> {
         Self::Wide(words)
     }
 
-    /// Whether there are no words.
-    pub(crate) const fn is_identity(&self) -> bool {
-        match self {
-            Self::Narrow(halves) => halves.is_empty(),
-            Self::Wide(words) => words.is_empty(),
-        }
-    }
-
     /// The number behind a reference.
     #[inline(always)]
     pub(crate) fn get(&self, index: u32) -> u32 {
@@ -68,7 +60,7 @@ impl References<'_> {
 }
 
 /// What turns around the halves of a word where its upper half comes first in memory.
-const SECOND_FIRST: u32 = cfg!(target_endian = "big") as u32;
+pub(crate) const SECOND_FIRST: u32 = cfg!(target_endian = "big") as u32;
 
 impl<'a> Leaf<'a> {
     /// `count` references from the one at `first`.

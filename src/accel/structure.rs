@@ -167,7 +167,7 @@ macro_rules! structures {
 
         impl<'a> Hierarchy for Structure<'a> {
             type Node = AnyNode<'a>;
-            type Leaf = Leaf<'a>;
+            type Leaf = AnyLeaf<'a>;
 
             fn root(&self) -> Option<Cell<AnyNode<'a>>> {
                 match self {
@@ -176,16 +176,16 @@ macro_rules! structures {
                 }
             }
 
-            fn open(&self, cell: &Cell<AnyNode<'a>>) -> Inside<AnyNode<'a>, Leaf<'a>> {
+            fn open(&self, cell: &Cell<AnyNode<'a>>) -> Inside<AnyNode<'a>, AnyLeaf<'a>> {
                 match (self, cell.node) {
                     (Self::List(list), AnyNode::List(node)) => match list.open(&cell.with(node)) {
-                        Inside::Leaf(range) => Inside::Leaf(range.into()),
+                        Inside::Leaf(range) => Inside::Leaf(AnyLeaf::All(range.into())),
                         Inside::Cells(cells) => {
                             Inside::Cells(cells.map(|cell| cell.map(|cell| cell.with(AnyNode::List(cell.node)))))
                         }
                     },
                     $((Self::$name(structure), AnyNode::$name(node)) => match structure.open(&cell.with(node)) {
-                        Inside::Leaf(leaf) => Inside::Leaf(leaf),
+                        Inside::Leaf(leaf) => Inside::Leaf(leaf.into()),
                         Inside::Cells(cells) => {
                             Inside::Cells(cells.map(|cell| cell.map(|cell| cell.with(AnyNode::$name(cell.node)))))
                         }

@@ -119,7 +119,11 @@ impl Kind {
 
     /// The version that this library writes, and the only one that it reads.
     pub(crate) const fn version(self) -> u32 {
-        1
+        match self {
+            // The first had a number beside each triangle or reference.
+            Self::Soup | Self::Grid => 2,
+            _ => 1,
+        }
     }
 }
 

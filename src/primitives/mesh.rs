@@ -43,7 +43,7 @@ pub enum MeshError {
     },
     /// A coordinate is not finite or exceeds [`MAX_COORDINATE`](crate::geometry::MAX_COORDINATE).
     Vertex {
-        /// The triangle that uses the vertex; of a [`Soup`](super::Soup) the place where it stands.
+        /// The triangle that uses the vertex.
         triangle: u32,
         /// The vertex's number among all; of a [`Soup`](super::Soup), which has none, the triangle's corner: 0, 1 or 2.
         vertex: u32,

@@ -35,7 +35,7 @@ pub use normals::Normals;
 pub use proximity::{Nearest, Probe, Proximity};
 pub use reordered::{Order, OrderError, Renumbering, Reordered};
 pub use smooth::Smooth;
-pub use soup::{Facet, Soup};
+pub use soup::Soup;
 pub use spheres::{SphereError, Spheres};
 pub use surface::Surface;
 pub(crate) use surface::unit;

@@ -1,82 +1,47 @@
 use glam::Vec3;
 
-use super::{Hit, MeshError, OrderError, Primitives, Probe, Proximity, Sides, Span, Surface};
+use super::{Hit, MeshError, Primitives, Probe, Proximity, Sides, Span, Surface, Triangles};
 use crate::{
     asset::{Asset, AssetError, Kind, Stored},
     error::Error,
     geometry::{Aabb, PreparedRay, Ray, Triangle, in_range, intersect_triangle},
 };
 
-/// A triangle as it stands in a [`Soup`]: its corners and its owner's number for it, 40 bytes.
-#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
-#[repr(C)]
-pub struct Facet {
-    /// The corners, counter-clockwise seen from the front.
-    pub corners: [[f32; 3]; 3],
-    /// The number that hits carry.
-    pub number: u32,
-}
-
-impl Facet {
-    /// The same triangle.
-    #[inline]
-    fn triangle(&self) -> Triangle {
-        let [a, b, c] = self.corners.map(Vec3::from_array);
-        Triangle::new(a, b, c)
-    }
-}
-
-/// Triangles whose corners lie where a structure's leaves want them: for the fewest instructions, where bytes do not count.
+/// Triangles that each have corners of their own: for the fewest instructions, where bytes do not count.
 ///
-/// A leaf is a range of it, and a triangle stands in as many places as leaves name it: a test loads nine numbers in a row,
-/// and neither a reference nor indices. Hits carry the owner's numbers, and so are bit for bit those of the mesh that it was made from.
-/// `bake::gathered` makes it and its structure; an asset holds both.
+/// A test loads nine numbers in a row in place of three indices and three vertices far apart, for 36 bytes a triangle in place
+/// of about 12. Under any structure; an asset holds both.
 ///
 /// ```
-/// use hitscan::{List, Mesh, Ray, Scene, glam::Vec3, primitives::{Facet, Soup}};
-/// let at = |z: f32| [[0.0, 0.0, z], [1.0, 0.0, z], [0.0, 1.0, z]];
-/// let (near, far) = (Facet { corners: at(1.0), number: 1 }, Facet { corners: at(2.0), number: 0 });
-/// // The triangle 0 stands at the places 0 and 2, the triangle 1 at place 1.
-/// let facets = [far, near, far];
-/// let soup = Soup::new(&facets, &[2, 1])?;
+/// use hitscan::{List, Ray, Scene, glam::{Vec3, vec3}, primitives::Soup};
+/// let at = |z: f32| [vec3(0.0, 0.0, z), vec3(1.0, 0.0, z), vec3(0.0, 1.0, z)];
+/// let triangles = [at(2.0), at(1.0)];
+/// let soup = Soup::new(&triangles)?;
 /// let scene = Scene::new(List::new(&soup)?, soup)?;
-/// let hit = scene.closest_hit(&Ray::new(Vec3::new(0.2, 0.2, 0.0), Vec3::Z)).unwrap();
+/// let hit = scene.closest_hit(&Ray::new(vec3(0.2, 0.2, 0.0), Vec3::Z)).unwrap();
 /// assert_eq!((hit.t, hit.primitive), (1.0, 1));
 /// # Ok::<(), hitscan::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Soup<'a> {
-    facets: &'a [Facet],
-    /// By number: one of the places where the triangle stands.
-    places: &'a [u32],
+    triangles: &'a [[Vec3; 3]],
     sides: Sides,
 }
 
 impl<'a> Soup<'a> {
-    /// The soup of these facets, hit from both sides; `places` says of each number where its triangle stands.
+    /// The soup of these triangles, hit from both sides; their corners stand counter-clockwise seen from the front.
     ///
     /// # Errors
     ///
-    /// [`MeshError::Vertex`] names the place and the corner that is not finite or beyond the range of coordinates,
-    /// [`OrderError`] the place whose number is none, or where another triangle stands than the number says.
-    pub fn new(facets: &'a [Facet], places: &'a [u32]) -> Result<Self, Error> {
-        let count = u32::try_from(facets.len()).ok().filter(|&n| n < u32::MAX).ok_or(MeshError::TooMany)?;
-        for (place, facet) in (0..count).zip(facets) {
-            let is_out = |corner: &[f32; 3]| !in_range(Vec3::from_array(*corner));
-            if let Some(corner) = facet.corners.iter().position(is_out) {
-                return Err(MeshError::Vertex { triangle: place, vertex: corner as u32 }.into());
-            }
-            if facet.number as usize >= places.len() {
-                return Err(OrderError { place }.into());
+    /// [`MeshError::Vertex`] names the triangle and the corner that is not finite or beyond the range of coordinates.
+    pub fn new(triangles: &'a [[Vec3; 3]]) -> Result<Self, MeshError> {
+        let count = u32::try_from(triangles.len()).ok().filter(|&n| n < u32::MAX).ok_or(MeshError::TooMany)?;
+        for (triangle, corners) in (0..count).zip(triangles) {
+            if let Some(corner) = corners.iter().position(|&corner| !in_range(corner)) {
+                return Err(MeshError::Vertex { triangle, vertex: corner as u32 });
             }
         }
-        for (number, &place) in (0..).zip(places) {
-            let there = facets.get(place as usize).map(|facet| facet.number);
-            if there != Some(number) {
-                return Err(OrderError { place }.into());
-            }
-        }
-        Ok(Self { facets, places, sides: Sides::Both })
+        Ok(Self { triangles, sides: Sides::Both })
     }
 
     /// The same soup, hit from `sides` only.
@@ -85,52 +50,43 @@ impl<'a> Soup<'a> {
         Self { sides, ..self }
     }
 
-    /// The triangles by place.
+    /// The corners of the triangles.
     #[must_use]
-    pub const fn facets(&self) -> &'a [Facet] {
-        self.facets
-    }
-
-    /// The triangle of a number; none if there is none.
-    fn numbered(&self, number: u32) -> Option<Triangle> {
-        let &place = self.places.get(number as usize)?;
-        self.facets.get(place as usize).map(Facet::triangle)
-    }
-
-    /// The triangle at a place; one without area if there is none.
-    fn at(&self, place: u32) -> Triangle {
-        let nothing = Triangle::new(Vec3::ZERO, Vec3::ZERO, Vec3::ZERO);
-        self.facets.get(place as usize).map_or(nothing, Facet::triangle)
+    pub const fn triangles(&self) -> &'a [[Vec3; 3]] {
+        self.triangles
     }
 }
 
-/// By place, as a structure's leaves name them; hits by number.
+impl Triangles for Soup<'_> {
+    fn triangle(&self, index: u32) -> Triangle {
+        let [a, b, c] = self.triangles.get(index as usize).copied().unwrap_or_default();
+        Triangle::new(a, b, c)
+    }
+
+    fn sides(&self) -> Sides {
+        self.sides
+    }
+}
+
 impl Primitives for Soup<'_> {
     #[inline(always)]
     fn len(&self) -> u32 {
-        self.facets.len() as u32
-    }
-
-    fn numbers(&self) -> u32 {
-        self.places.len() as u32
+        self.triangles.len() as u32
     }
 
     fn bounds(&self, index: u32) -> Aabb {
-        self.at(index).bounds()
+        self.triangle(index).bounds()
     }
 
     #[inline(always)]
     fn intersect(&self, index: u32, ray: &PreparedRay, span: &Span) -> Option<Hit> {
-        let facet = self.facets.get(index as usize)?;
-        let crossing = intersect_triangle(facet.corners.each_ref(), ray, || (span.t_min(), span.t_max()))?;
-        self.sides.see(&crossing, span, facet.number)
+        let corners = self.triangles.get(index as usize)?.each_ref().map(AsRef::<[f32; 3]>::as_ref);
+        let crossing = intersect_triangle(corners, ray, || (span.t_min(), span.t_max()))?;
+        self.sides.see(&crossing, span, index)
     }
 
     fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
-        match self.numbered(hit.primitive) {
-            Some(triangle) => Surface::of_triangle(&triangle, ray, hit),
-            None => Surface::facing(ray, hit.t),
-        }
+        Surface::of_triangle(&self.triangle(hit.primitive), ray, hit)
     }
 
     #[inline(always)]
@@ -139,33 +95,32 @@ impl Primitives for Soup<'_> {
     }
 
     fn clip(&self, index: u32, cell: &Aabb) -> Option<Aabb> {
-        self.at(index).clip(cell)
+        self.triangle(index).clip(cell)
     }
 
     #[inline]
     fn outline(&self, index: u32) -> Option<Triangle> {
-        Some(self.at(index))
+        Some(self.triangle(index))
     }
 }
 
 impl Proximity for Soup<'_> {
-    fn closest_point(&self, number: u32, point: Vec3) -> Option<Vec3> {
-        Some(self.numbered(number)?.closest_point(point))
+    fn closest_point(&self, index: u32, point: Vec3) -> Option<Vec3> {
+        self.triangles.get(index as usize)?;
+        Some(self.triangle(index).closest_point(point))
     }
 
     fn approach(&self, index: u32, probe: &Probe) -> Option<Hit> {
-        let facet = self.facets.get(index as usize)?;
-        probe.accept(facet.triangle().distance(probe.point()), facet.number)
+        self.triangles.get(index as usize)?;
+        probe.accept(self.triangle(index).distance(probe.point()), index)
     }
 }
 
-/// The section of a soup: how many numbers, the place of each, then the facets.
+/// The section of a soup: nine words a triangle.
 impl<'a> Stored<'a> for Soup<'a> {
     fn read(asset: &Asset<'a>) -> Result<Self, Error> {
         let words = asset.section(Kind::Soup)?;
         let error = AssetError::Shape { kind: Kind::Soup, words: words.len() };
-        let (&count, words) = words.split_first().ok_or(error)?;
-        let (places, facets) = words.split_at_checked(count as usize).ok_or(error)?;
-        Self::new(bytemuck::try_cast_slice(facets).map_err(|_| error)?, places)
+        Ok(Self::new(bytemuck::try_cast_slice(words).map_err(|_| error)?)?)
     }
 }

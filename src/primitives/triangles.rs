@@ -1,7 +1,7 @@
 use super::{LatticeMesh, Mesh, Primitives, Sides, Smooth};
 use crate::geometry::Triangle;
 
-/// Primitives that are triangles: a [`Mesh`], a [`Smooth`] one, a [`LatticeMesh`].
+/// Primitives that are triangles: a [`Mesh`], a [`Smooth`] one, a [`LatticeMesh`], a [`Soup`](super::Soup).
 ///
 /// What [`Primitives::intersect`] returns must be what [`Triangle::intersect`] finds for the triangle of that index, on the
 /// sides that can be hit, and carry the index as its number; and all must be [certified](Primitives::is_certified). Structures that

@@ -14,6 +14,8 @@ use super::walk::{Shape, Walker};
 pub enum Shortcut {
     /// Grid: a digital differential analyser that never goes back where planes are crossed at once.
     OneCellAtATime,
+    /// Grid: a sweep without margin, for which crossings are close only if they are equal.
+    SweepWithoutMargin,
     /// Octree: the planes in the middle are crossed at the mean of the parameters of the planes around.
     MeanOfParameters,
     /// Bounded: a ray that misses the box, by plain slabs, is not walked.
@@ -28,8 +30,9 @@ pub enum Shortcut {
 
 impl Shortcut {
     /// All of them.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::OneCellAtATime,
+        Self::SweepWithoutMargin,
         Self::MeanOfParameters,
         Self::PlainBox,
         Self::PlainSphere,
@@ -109,12 +112,10 @@ impl Walker<'_> {
         match shortcut {
             Shortcut::OneCellAtATime if taken => self.one_cell_at_a_time(&whole),
             Shortcut::MeanOfParameters if taken => self.mean_of_parameters(&whole),
-            Shortcut::OneCellAtATime | Shortcut::MeanOfParameters => {
-                for at in cells() {
-                    let cell = cell(&whole, at);
-                    if self.meets(&cell) {
-                        self.visit(&cell);
-                    }
+            Shortcut::OneCellAtATime | Shortcut::MeanOfParameters => self.all_cells(&whole),
+            Shortcut::SweepWithoutMargin => {
+                if !self.sweep(&whole, !taken) {
+                    self.all_cells(&whole);
                 }
             }
             Shortcut::PlainBox if taken && !self.meets_plainly(&whole) => {}
@@ -128,6 +129,74 @@ impl Walker<'_> {
             Shortcut::BestPassedDown => self.placed(&whole, taken),
         }
         self.best
+    }
+
+    /// All cells that have to be visited, in no order.
+    fn all_cells(&mut self, whole: &Aabb) {
+        for at in cells() {
+            let cell = cell(whole, at);
+            if self.meets(&cell) {
+                self.visit(&cell);
+            }
+        }
+    }
+
+    /// Planes at sums of parameters, two that are close in both orders; false where more are.
+    fn sweep(&mut self, whole: &Aabb, has_margin: bool) -> bool {
+        let Some((enter, exit)) = self.interval(whole) else { return true };
+        let start = if enter > self.ray.t_min { enter } else { self.ray.t_min };
+        let farthest = whole.min.abs().max(whole.max.abs()).max_element();
+        let margin = exit.max(-start) * (1.0 / 32_768.0 + SIDE as f32 / 2_097_152.0)
+            + self.views.iter().map(|view| view.1.abs()).sum::<f32>() * (farthest / 262_144.0)
+            + (self.ray.t_min.abs() - self.ray.t_min) / 4096.0
+            + 4.0 * f32::MIN_POSITIVE;
+        let margin = if has_margin { margin } else { 0.0 * margin };
+        let width = (whole.max - whole.min) / SIDE as f32;
+        let step = Axis::ALL.map(|axis| axis.of(width) * self.views[axis as usize].0.abs());
+        let ahead = Axis::ALL.map(|axis| if self.ascends(axis) { 1 } else { -1 });
+        let mut at = ahead.map(|ahead| if ahead > 0 { 0 } else { SIDE as i32 - 1 });
+        let mut next = Axis::ALL.map(|axis| {
+            let near = plane(whole, axis, if self.ascends(axis) { 0 } else { SIDE });
+            (near - axis.of(self.ray.origin)) * self.views[axis as usize].0 + step[axis as usize]
+        });
+        for axis in 0..3 {
+            while next[axis] <= start - margin && (0..SIDE as i32).contains(&at[axis]) {
+                next[axis] += step[axis];
+                at[axis] += ahead[axis];
+            }
+        }
+        let mut clear = start - 2.0 * margin;
+        loop {
+            if at.iter().all(|index| (0..SIDE as i32).contains(index)) {
+                self.visit(&cell(whole, at.map(|index| index as usize)));
+            }
+            let axis = (0..3).min_by(|&a, &b| next[a].total_cmp(&next[b])).unwrap();
+            let t = next[axis];
+            if !(clear < t) {
+                let is_next = |axis: &usize| !(next[*axis] > t + 2.0 * margin);
+                let is_last = |axis: &usize| !(next[*axis] - step[*axis] < t - 2.0 * margin);
+                let [of_next, of_last] = [(0..3).filter(is_next).collect::<Vec<_>>(), (0..3).filter(is_last).collect()];
+                let (&[of_next], &[of_last]) = (&of_next[..], &of_last[..]) else { return false };
+                if of_next == of_last {
+                    return false;
+                }
+                next[of_next] += step[of_next];
+                at[of_next] += ahead[of_next];
+                next[of_last] -= step[of_last];
+                at[of_last] -= ahead[of_last];
+                clear = next[of_last] - margin;
+                if !(clear < next[of_last]) {
+                    clear = f32::NEG_INFINITY;
+                }
+                continue;
+            }
+            clear = t + margin;
+            if t > self.beyond(self.best.map_or(self.ray.t_max, |best| best.t)) + margin || t > exit + margin {
+                return true;
+            }
+            next[axis] = t + step[axis];
+            at[axis] += ahead[axis];
+        }
     }
 
     /// Amanatides and Woo 1987, to the letter.

@@ -258,7 +258,7 @@ fn structured_lies_are_refused() {
         assert_eq!(reason(&|_| {}), Ok(()));
         assert_eq!(reason(&|words| words.push(0)), Err(Reason::Length));
         assert_eq!(reason(&|words| words[0] = 1), Err(Reason::Primitive));
-        assert!(reason(&|words| words[0] = 1 << 17).is_err(), "wide references");
+        assert!(form != Form::Full || reason(&|words| words[0] = 1 << 17).is_err(), "entries by more jumps");
         assert!(reason(&|words| words[1] = references - 1).is_err());
         assert!(reason(&|words| words[2] += 1).is_err());
         assert_eq!(reason(&|words| words[3] = 3), Err(Reason::Header));
@@ -368,7 +368,7 @@ fn walks_are_short_and_the_mailbox_makes_them_shorter() {
         let cells = nx * ny * nz;
         assert!(cells as f32 > triangles.len() as f32 * options.density * 0.7, "{cells}");
         let per_cell = match options.form {
-            Form::Full => 3.5,
+            Form::Full => 5.0,
             Form::Octants => 5.5,
             Form::Bitmask => 2.0,
         };

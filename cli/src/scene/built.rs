@@ -96,15 +96,6 @@ impl Built {
         })
     }
 
-    /// The same over a [`Soup`](hitscan::primitives::Soup), and its triangles by place.
-    pub fn gathered<P: Primitives>(self, primitives: &P) -> Result<(Self, Vec<u32>), Failure> {
-        let Some((words, order)) = bake::gathered(&self.structure(primitives)?) else {
-            let what = format!("--soup: the leaves of this structure ({}) are no ranges", self.name);
-            return Err(Failure::new(what, "choose kdtree, grid, bvh or dual-split"));
-        };
-        Ok((Self { words, ..self }, order))
-    }
-
     /// How long it took to get it.
     pub fn time(&self) -> String {
         let verb = if self.opened { "checked" } else { "built" };

@@ -71,10 +71,7 @@ impl Geometry {
             (mesh.positions().collect(), corners.collect())
         } else if has(Kind::Soup) {
             let soup: Soup<'_> = asset.read()?;
-            let mut corners = vec![[[0.0; 3]; 3]; soup.numbers() as usize];
-            soup.facets().iter().for_each(|facet| corners[facet.number as usize] = facet.corners);
-            let vertices = corners.into_iter().flatten().map(Vec3::from_array);
-            (vertices.collect(), (0..soup.numbers()).map(|n| [3 * n, 3 * n + 1, 3 * n + 2]).collect())
+            (soup.triangles().as_flattened().to_vec(), (0..soup.len()).map(|n| [3 * n, 3 * n + 1, 3 * n + 2]).collect())
         } else {
             return Ok(None);
         };

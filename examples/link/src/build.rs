@@ -14,7 +14,7 @@ use hitscan::{
 };
 
 use crate::{
-    input::{aabb, facet, float, ray, some, sphere, vector, word},
+    input::{aabb, float, ray, some, sphere, triangle, vector, word},
     plan,
 };
 
@@ -24,7 +24,7 @@ pub fn all() {
     let wide = || [word(), word(), word()];
     with(&Mesh::new(some(vector, &mut None), some(corners, &mut None)));
     with(&Mesh::new(some(vector, &mut None), some(wide, &mut None)));
-    with(&Soup::new(some(facet, &mut None), some(word, &mut None)));
+    with(&Soup::new(some(triangle, &mut None)));
     with(&Spheres::new(some(sphere, &mut None)));
     with::<_, ()>(&Ok(from_fn(word(), |_| aabb(), |_, _| Some(float()))));
     assets();
@@ -90,8 +90,7 @@ fn walk<A: Accelerator>(structure: &A) {
 fn one(structure: &Structure<'_>, arena: &mut Arena<'_>) {
     match structure {
         Structure::Grid(grid) => {
-            black_box((grid.resolution(), grid.reference_count(), grid.is_ordered()));
-            black_box((grid.order().last(), grid.ordered_words().last()));
+            black_box((grid.resolution(), grid.reference_count()));
         }
         Structure::Octree(tree) => {
             black_box((tree.node_count(), tree.reference_count(), tree.depth(), tree.expected_work()));
@@ -99,7 +98,6 @@ fn one(structure: &Structure<'_>, arena: &mut Arena<'_>) {
         Structure::KdTree(tree) => {
             black_box((tree.node_count(), tree.reference_count(), tree.depth(), tree.expected_work()));
             black_box(tree.for_height::<20>().is_some());
-            black_box((tree.is_ordered(), tree.order().last(), tree.ordered_words().last()));
         }
         Structure::CompactKdTree(tree) => {
             black_box((tree.node_words(), tree.reference_count(), tree.depth(), tree.for_height::<20>().is_some()));

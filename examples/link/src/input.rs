@@ -6,7 +6,6 @@ use hitscan::{
     Ray,
     geometry::{Aabb, Sphere},
     glam::{Mat3, Vec3},
-    primitives::Facet,
 };
 
 /// An opaque number.
@@ -44,9 +43,9 @@ pub fn sphere() -> Sphere {
     Sphere::new(vector(), float())
 }
 
-/// An opaque triangle of a soup.
-pub fn facet() -> Facet {
-    Facet { corners: [vector(), vector(), vector()].map(|corner| corner.to_array()), number: word() }
+/// Opaque corners of a triangle.
+pub fn triangle() -> [Vec3; 3] {
+    [vector(), vector(), vector()]
 }
 
 /// Opaque things, of which the optimiser does not know how many.

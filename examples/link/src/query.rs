@@ -17,7 +17,7 @@ use hitscan::{
 };
 
 use crate::{
-    input::{aabb, facet, float, matrix, ray, some, sphere, vector, word},
+    input::{aabb, float, matrix, ray, some, sphere, triangle, vector, word},
     own::{Own, asked},
     plan, render,
 };
@@ -67,10 +67,10 @@ pub fn all() {
 }
 
 fn soup() {
-    let (mut facets, mut places) = (None, None);
-    if let Ok(soup) = Soup::new(some(facet, &mut facets), some(word, &mut places)) {
+    let mut triangles = None;
+    if let Ok(soup) = Soup::new(some(triangle, &mut triangles)) {
         with(&soup.with_sides(sides()));
-        black_box(soup.facets().len());
+        black_box(soup.triangles().len());
     }
 }
 

@@ -1,15 +1,16 @@
 //! The builder: count the references of each cell, sum the counts, and fill in the references from behind.
 //!
 //! ```text
-//! | header | blocks, if a bitmask | a count per cell, later where its references begin | references | octants |
+//! | header | blocks, if a bitmask | a count per cell, later where its references begin | references | octants | lists |
 //! ```
 //!
 //! At the end the offsets are made narrow, or fewer, where they stand, and the references moved up to them.
 
 use super::{
     HEADER_WORDS, MAX_COUNT,
-    cells::{OFFSET, block_words, narrow_offsets, narrow_references, number_words, reference_words},
+    cells::{OFFSET, block_words, group, list_words, narrow_offsets, narrow_references, number_words, reference_words},
     cover::Frame,
+    met,
     open::Header,
     options::{Form, Options},
     resolution::resolution,
@@ -33,18 +34,21 @@ pub(super) const fn words(primitives: usize, options: &Options) -> usize {
         bytes => bytes.div_ceil(4),
     };
     let narrow = narrow_offsets(options.form, most_references(options.form, primitives, options.bytes(primitives)));
+    let most = most_references(options.form, primitives, options.bytes(primitives));
     let scratch = match options.form {
         // The counts become the offsets.
         Form::Full if narrow => 0,
-        Form::Octants => 0,
-        _ => number_words(cells + 1, narrow),
+        Form::Full => number_words(cells + 1, narrow),
+        // Lists are packed beside what they are made of.
+        Form::Octants => reference_words(most, primitives),
+        Form::Bitmask => number_words(cells + 1, narrow).saturating_add(reference_words(most, primitives)),
     };
     body.saturating_add(scratch)
 }
 
-/// How many references certainly do not fit if there are more: a number takes two bytes or four, its octants take one.
+/// How many references certainly do not fit if there are more: an entry takes two bytes.
 const fn most_references(form: Form, primitives: usize, bytes: usize) -> usize {
-    let most = bytes / if narrow_references(primitives) { 3 } else { 5 };
+    let most = bytes / (2 * group(form, primitives) as usize);
     if matches!(form, Form::Octants) && most > OFFSET as usize { OFFSET as usize } else { most }
 }
 
@@ -69,7 +73,8 @@ pub(super) fn build<P: Primitives + ?Sized>(
     let frame = Frame::new(&bounds, resolution(&bounds, cells));
     let most = most_references(options.form, count as usize, allowed);
     let narrow = narrow_offsets(options.form, most);
-    let mut builder = Builder { primitives, options, allowed, most, narrow, bounds, words, frame, references: 0 };
+    let mut builder =
+        Builder { primitives, options, allowed, most, narrow, bounds, words, frame, references: 0, listed: 0 };
     // Without cuts to be made, counting is as quick as an estimate.
     let hopeless = options.clip && !builder.estimate(cells, 2);
     if hopeless || !builder.count(cells)? {
@@ -98,6 +103,8 @@ struct Builder<'w, 'p, P: ?Sized> {
     words: &'w mut [u32],
     frame: Frame,
     references: usize,
+    /// Entries of all lists.
+    listed: usize,
 }
 
 impl<P: Primitives + ?Sized> Builder<'_, '_, P> {
@@ -108,10 +115,18 @@ impl<P: Primitives + ?Sized> Builder<'_, '_, P> {
 
     /// Makes sure that there is room for the table and so many references.
     fn reserve(&self, references: usize) -> Result<(), Full> {
-        let references = reference_words(references, self.primitives.len() as usize);
-        let at_least = self.table() + number_words(self.frame.cells() + 1, self.narrow) + references;
+        let at_least = self.table() + number_words(self.frame.cells() + 1, self.narrow) + self.unpacked(references);
         let available = self.words.len();
         if at_least <= available { Ok(()) } else { Err(Full { at_least, available }) }
+    }
+
+    /// Words of so many references as they are filled in.
+    fn unpacked(&self, references: usize) -> usize {
+        let primitives = self.primitives.len() as usize;
+        match self.options.form {
+            Form::Full => list_words(Form::Full, references, primitives),
+            Form::Octants | Form::Bitmask => reference_words(references, primitives),
+        }
     }
 
     /// Whether a grid of at most so many cells should be within so many times the bytes allowed.
@@ -123,11 +138,14 @@ impl<P: Primitives + ?Sized> Builder<'_, '_, P> {
             references = references.saturating_add(frame.estimate(&self.primitives.bounds(primitive), clip));
         }
         let occupied = frame.cells().min(references);
-        let size = size(self.options.form, primitives as usize, frame.cells(), occupied, references);
+        // Some entries are jumps.
+        let jumps = if self.options.form == Form::Full { 0 } else { references / 8 };
+        let listed = references.saturating_add(jumps);
+        let size = size(self.options.form, primitives as usize, frame.cells(), occupied, listed);
         size.saturating_mul(4) <= self.allowed.saturating_mul(times)
     }
 
-    /// Counts the references of each of at most so many cells; whether the grid is then within the bytes allowed.
+    /// Counts and fills in the references of each of at most so many cells; whether the grid is then within the bytes allowed.
     fn count(&mut self, cells: u32) -> Result<bool, Full> {
         self.frame = Frame::new(&self.bounds, resolution(&self.bounds, cells));
         let (frame, clip, first, narrow) = (&self.frame, self.options.clip, self.table(), self.narrow);
@@ -153,22 +171,69 @@ impl<P: Primitives + ?Sized> Builder<'_, '_, P> {
             }
         }
         let occupied = (0..cells).filter(|&cell| get(table, cell, narrow) > 0).count();
-        let size = size(self.options.form, primitives, cells, occupied, references);
-        if size.saturating_mul(4) > self.allowed {
+        let fits =
+            |listed| size(self.options.form, primitives, cells, occupied, listed).saturating_mul(4) <= self.allowed;
+        if !fits(references) {
             return Ok(false);
         }
-        self.references = references;
         self.reserve(references)?;
-        Ok(true)
+        (self.references, self.listed) = (references, references);
+        self.fill();
+        if self.options.form == Form::Full {
+            return Ok(true);
+        }
+        self.list();
+        let size = size(self.options.form, primitives, cells, occupied, self.listed);
+        if self.listed > self.most || size.saturating_mul(4) > self.allowed {
+            return Ok(false);
+        }
+        let (at_least, available) = (first + self.lists() + self.listed.div_ceil(2), self.words.len());
+        if at_least <= available { Ok(true) } else { Err(Full { at_least, available }) }
     }
 
-    /// Fills in the references and makes everything small; the length of all.
+    /// Where the final lists stand, after the beginning of the table.
+    fn lists(&self) -> usize {
+        let table = number_words(self.frame.cells() + 1, self.narrow);
+        match self.options.form {
+            Form::Full => table,
+            Form::Octants | Form::Bitmask => table + self.unpacked(self.references),
+        }
+    }
+
+    /// Packs the references of all cells behind them, as far as there is room; the table then says where the entries begin.
+    fn list(&mut self) {
+        let (narrow, first, lists, cells) = (self.narrow, self.table(), self.lists(), self.frame.cells());
+        let narrow_numbers = narrow_references(self.primitives.len() as usize);
+        let (_, body) = self.words.split_at_mut_checked(first).unwrap_or_default();
+        let (body, packed) = body.split_at_mut_checked(lists).unwrap_or_default();
+        let (table, references) = body.split_at_mut_checked(number_words(cells + 1, narrow)).unwrap_or_default();
+        let numbers = number_words(self.references, narrow_numbers);
+        let has_octants = self.options.form == Form::Octants;
+        let (mut listed, mut next) = (0, get(table, 0, narrow));
+        for cell in 0..cells {
+            let begin = next;
+            next = get(table, cell + 1, narrow);
+            let reference =
+                |index| (get(references, index as usize, narrow_numbers), octants(references, numbers, index));
+            let of_cell = (begin..next).map(reference);
+            let octants = if has_octants { of_cell.clone().fold(0, |all, (_, octants)| all | octants) } else { 0 };
+            set(table, cell, octants << 24 | listed as u32, narrow);
+            met::pack(of_cell, |entry| {
+                set(packed, listed, entry, true);
+                listed += 1;
+            });
+        }
+        set(table, cells, listed as u32, narrow);
+        set(packed, listed, 0, true);
+        self.listed = listed;
+    }
+
+    /// Makes everything small; the length of all.
     fn finish(mut self) -> usize {
-        self.fill();
         let (entries, end) = self.pack();
         let header = Header {
             primitives: self.primitives.len(),
-            references: self.references as u32,
+            listed: self.listed as u32,
             entries,
             form: self.options.form,
             resolution: self.frame.resolution,
@@ -183,7 +248,8 @@ impl<P: Primitives + ?Sized> Builder<'_, '_, P> {
     /// Counts become ends and, reference by reference, beginnings.
     fn fill(&mut self) {
         let (frame, clip) = (&self.frame, self.options.clip);
-        let (narrow, narrow_numbers) = (self.narrow, narrow_references(self.primitives.len() as usize));
+        let (is_full, count) = (self.options.form == Form::Full, self.primitives.len() as usize);
+        let (narrow, narrow_numbers) = (self.narrow, narrow_references(count));
         let (first, cells) = (self.table(), frame.cells());
         let (_, body) = self.words.split_at_mut_checked(first).unwrap_or_default();
         let (table, references) = body.split_at_mut_checked(number_words(cells + 1, narrow)).unwrap_or_default();
@@ -192,17 +258,30 @@ impl<P: Primitives + ?Sized> Builder<'_, '_, P> {
             sum += get(table, cell, narrow);
             set(table, cell, sum, narrow);
         }
-        let used = reference_words(self.references, self.primitives.len() as usize);
+        let used = if is_full {
+            list_words(Form::Full, self.references, count)
+        } else {
+            reference_words(self.references, count)
+        };
         references.iter_mut().take(used).for_each(|word| *word = 0);
-        let numbers = number_words(self.references, narrow_numbers);
+        let numbers = if is_full { used } else { number_words(self.references, narrow_numbers) };
         let (references, octants) = references.split_at_mut_checked(numbers).unwrap_or_default();
+        let (jumps, group) = (met::jumps(count), group(Form::Full, count));
         for primitive in (0..self.primitives.len()).rev() {
             frame.cover(self.primitives, primitive, clip, |cell, bits| {
                 let end = get(table, cell as usize, narrow).wrapping_sub(1);
                 set(table, cell as usize, end, narrow);
-                set(references, end as usize, primitive, narrow_numbers);
-                if let Some(word) = octants.get_mut(end as usize / 4) {
-                    *word |= bits << (end % 4 * 8);
+                if is_full {
+                    let mut place = end.wrapping_mul(group) as usize;
+                    met::far(primitive, bits, jumps, |entry| {
+                        set(references, place, entry, true);
+                        place += 1;
+                    });
+                } else {
+                    set(references, end as usize, primitive, narrow_numbers);
+                    if let Some(word) = octants.get_mut(end as usize / 4) {
+                        *word |= bits << (end % 4 * 8);
+                    }
                 }
                 true
             });
@@ -212,13 +291,12 @@ impl<P: Primitives + ?Sized> Builder<'_, '_, P> {
     /// Writes the blocks, brings the offsets into their final form and the references behind them; how many offsets there
     /// are before the last, and the length of all.
     fn pack(&mut self) -> (u32, usize) {
-        let (counts, narrow) = (self.narrow, narrow_offsets(self.options.form, self.references));
+        let (counts, narrow) = (self.narrow, narrow_offsets(self.options.form, self.listed));
+        let lists = self.lists();
         let (table, cells) = (self.table(), self.frame.cells());
         let (front, body) = self.words.split_at_mut_checked(table).unwrap_or_default();
         let (_, blocks) = front.split_at_mut_checked(HEADER_WORDS).unwrap_or_default();
         let mut entries = 0;
-        let numbers = number_words(self.references, narrow_references(self.primitives.len() as usize));
-        let numbers = number_words(cells + 1, counts) + numbers;
         // An entry never stands behind the cell that it is of, so that no offset is overwritten before it is read.
         let mut next = get(body, 0, counts);
         for cell in 0..cells {
@@ -236,11 +314,7 @@ impl<P: Primitives + ?Sized> Builder<'_, '_, P> {
                     *bits |= 1 << (cell % 32);
                 }
             }
-            let octants = match self.options.form {
-                Form::Octants => (begin..next).fold(0, |all, index| all | octants(body, numbers, index)),
-                _ => 0,
-            };
-            set(body, entries, octants << 24 | begin, narrow);
+            set(body, entries, begin, narrow);
             entries += 1;
         }
         set(body, entries, next, narrow);
@@ -249,13 +323,13 @@ impl<P: Primitives + ?Sized> Builder<'_, '_, P> {
             set(body, entries + 1, 0, narrow);
         }
 
-        let (from, to) = (number_words(cells + 1, counts), number_words(entries + 1, narrow));
-        let references = reference_words(self.references, self.primitives.len() as usize);
-        for index in 0..references {
-            let word = get(body, from + index, false);
+        let to = number_words(entries + 1, narrow);
+        let length = list_words(self.options.form, self.listed, self.primitives.len() as usize);
+        for index in 0..length {
+            let word = get(body, lists + index, false);
             set(body, to + index, word, false);
         }
-        (entries as u32, table + to + references)
+        (entries as u32, table + to + length)
     }
 }
 

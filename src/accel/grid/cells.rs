@@ -1,4 +1,4 @@
-use super::{HEADER_WORDS, options::Form};
+use super::{HEADER_WORDS, met::jumps, options::Form};
 use crate::accel::leaf::References;
 
 /// The table of cells: where the references of each begin.
@@ -13,6 +13,8 @@ pub(super) struct Cells<'a> {
     pub(super) offsets: References<'a>,
     /// The bits of an offset; above them may be a bit per octant in which there is something.
     pub(super) mask: u32,
+    /// Entries per reference, which offsets count; or 1, and they count entries.
+    pub(super) group: u32,
 }
 
 /// The number of a cell.
@@ -47,35 +49,44 @@ pub(super) const fn narrow_references(primitives: usize) -> bool {
     primitives <= 1 << 16
 }
 
-/// Words of a whole grid.
-pub(super) const fn size(form: Form, primitives: usize, cells: usize, occupied: usize, references: usize) -> usize {
+/// Words of a whole grid whose last offset is `listed`.
+pub(super) const fn size(form: Form, primitives: usize, cells: usize, occupied: usize, listed: usize) -> usize {
     let entries = match form {
         Form::Full | Form::Octants => cells,
         Form::Bitmask => occupied,
     };
-    let offsets = number_words(entries.saturating_add(1), narrow_offsets(form, references));
+    let offsets = number_words(entries.saturating_add(1), narrow_offsets(form, listed));
     (HEADER_WORDS + block_words(form, cells))
         .saturating_add(offsets)
-        .saturating_add(reference_words(references, primitives))
+        .saturating_add(list_words(form, listed, primitives))
 }
 
-/// Words of references with their octants.
+/// Entries that offsets count as one.
+pub(super) const fn group(form: Form, primitives: usize) -> u32 {
+    if matches!(form, Form::Full) { jumps(primitives) + 1 } else { 1 }
+}
+
+/// Words of lists whose last offset is `listed`.
+pub(super) const fn list_words(form: Form, listed: usize, primitives: usize) -> usize {
+    listed.saturating_mul(group(form, primitives) as usize).div_ceil(2)
+}
+
+/// Words of numbers with their octants, before they are packed.
 pub(super) const fn reference_words(references: usize, primitives: usize) -> usize {
     number_words(references, narrow_references(primitives)).saturating_add(references.div_ceil(4))
 }
 
 impl Cells<'_> {
     /// No cells.
-    pub(super) const NONE: Self = Self { blocks: &[], offsets: References::IDENTITY, mask: u32::MAX };
+    pub(super) const NONE: Self = Self { blocks: &[], offsets: References::IDENTITY, mask: u32::MAX, group: 1 };
 
-    /// The first reference of a cell and how many there are, if any.
+    /// The first entry of a cell and the one behind its last, if there are any.
     #[inline(always)]
     pub(super) fn of(&self, cell: u32) -> Option<(u32, u32)> {
         let entry = if self.blocks.is_empty() { cell } else { self.rank(cell)? };
         let (first, end) = self.offsets.pair(entry)?;
-        let first = first & self.mask;
-        let count = (end & self.mask).wrapping_sub(first);
-        if count == 0 { None } else { Some((first, count)) }
+        let [first, end] = [first, end].map(|offset| (offset & self.mask).wrapping_mul(self.group));
+        (first < end).then_some((first, end))
     }
 
     /// How many occupied cells there are before an occupied one.

@@ -64,7 +64,7 @@ impl Course {
         let farthest = greatest(bounds.min.abs().max_element(), bounds.max.abs().max_element());
         Self {
             axes,
-            relative: 1.0 / 32_768.0 + steps * (1.0 / 4_194_304.0),
+            relative: 1.0 / 32_768.0 + steps * (1.0 / 2_097_152.0),
             absolute: farthest * (1.0 / 262_144.0) + f32::MIN_POSITIVE,
         }
     }

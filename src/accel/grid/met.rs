@@ -1,63 +1,92 @@
-use crate::accel::leaf::References;
+//! What a cell names: a list of entries of 16 bits, of which most are a primitive each.
+//!
+//! An entry has octants of the cell above, in which the primitive is, and what is to be added to the last number below. One
+//! with all octants and the highest bit of what is below is a jump: the last number becomes the 7 bits below that, of jumps in a
+//! row the first ones above the others, and 7 bits that are zero.
+
+use crate::accel::leaf::SECOND_FIRST;
+
+/// Jumps are no less.
+const JUMP: u32 = 0xff80;
+
+/// How many jumps lead to all numbers below `primitives`.
+pub(super) const fn jumps(primitives: usize) -> u32 {
+    if primitives <= 1 << 14 {
+        1
+    } else if primitives <= 1 << 21 {
+        2
+    } else {
+        3
+    }
+}
+
+/// Gives `emit` the entries of a primitive by so many jumps, wherever it stands.
+pub(super) fn far(number: u32, octants: u32, jumps: u32, mut emit: impl FnMut(u32)) {
+    for jump in (1..=jumps).rev() {
+        emit(JUMP | number >> (7 * jump) & 0x7f);
+    }
+    emit(octants << 8 | number & 0x7f);
+}
+
+/// Gives `emit` the entries of primitives, whose numbers rise.
+pub(super) fn pack(primitives: impl Iterator<Item = (u32, u32)>, mut emit: impl FnMut(u32)) {
+    let mut last = 0;
+    for (number, octants) in primitives {
+        let step = number.wrapping_sub(last);
+        let entry = octants << 8 | step;
+        if step <= 0xff && entry < JUMP {
+            emit(entry);
+        } else {
+            far(number, octants, jumps(number as usize + 1), &mut emit);
+        }
+        last = number;
+    }
+}
+
+/// The octants of an entry.
+pub(super) const fn octants_of(entry: u16) -> u32 {
+    let entry = entry as u32;
+    if entry < JUMP { entry >> 8 } else { 0 }
+}
 
 /// The primitives of a cell that are in an octant of it that the ray meets.
 #[derive(Clone, Copy, Debug)]
 pub struct Met<'a> {
+    /// The entries of all cells, or of those up to this one.
+    entries: &'a [u16],
     next: u32,
+    /// Elsewhere the entries end there: a word less to be stored for each cell.
+    #[cfg(target_endian = "big")]
     end: u32,
-    references: References<'a>,
-    octants: &'a [u8],
-    /// A bit per octant that the ray meets.
+    number: u32,
+    /// A bit per octant that the ray meets, where entries have theirs: along x they count 4, along y 2, along z 1.
     on_the_way: u32,
 }
 
-/// What turns around the bytes of a word where its upper ones come first in memory.
-const FOURTH_FIRST: u32 = if cfg!(target_endian = "big") { 3 } else { 0 };
-
-/// In which octants of its cell a reference is.
-#[inline(always)]
-pub(super) fn octants_of(octants: &[u8], reference: u32) -> Option<u32> {
-    octants.get((reference ^ FOURTH_FIRST) as usize).map(|&octants| octants.into())
-}
-
 impl<'a> Met<'a> {
-    /// Those of the references from `first` up to `end` that share a bit with `on_the_way`.
+    /// Those of the entries from `first` up to `end` that share a bit with `on_the_way`.
     #[inline(always)]
-    pub(super) const fn new(
-        references: References<'a>,
-        octants: &'a [u8],
-        first: u32,
-        end: u32,
-        on_the_way: u32,
-    ) -> Self {
-        Self { next: first, end, references, octants, on_the_way }
-    }
-
-    /// Those of the references from `first` up to `end` that share a bit with `on_the_way`, if there are any.
-    #[inline(always)]
-    pub(super) fn of(
-        references: References<'a>,
-        octants: &'a [u8],
-        first: u32,
-        end: u32,
-        on_the_way: u32,
-    ) -> Option<Self> {
-        let mut met = Self::new(references, octants, first, end, on_the_way);
-        met.next = met.ahead()?;
-        Some(met)
-    }
-
-    /// The next reference, if there is one.
-    #[inline(always)]
-    fn ahead(&self) -> Option<u32> {
-        let mut next = self.next;
-        while next < self.end {
-            if octants_of(self.octants, next)? & self.on_the_way != 0 {
-                return Some(next);
-            }
-            next += 1;
+    pub(super) fn new(entries: &'a [u16], first: u32, end: u32, on_the_way: u32) -> Self {
+        // One comparison is then enough for both ends.
+        let entries = if SECOND_FIRST == 0 { entries.get(..end as usize).unwrap_or(&[]) } else { entries };
+        Self {
+            entries,
+            next: first,
+            #[cfg(target_endian = "big")]
+            end,
+            number: 0,
+            on_the_way: on_the_way << 8,
         }
-        None
+    }
+
+    /// The next entry.
+    #[inline(always)]
+    fn entry(&self) -> Option<u32> {
+        #[cfg(target_endian = "big")]
+        if self.next >= self.end {
+            return None;
+        }
+        self.entries.get((self.next ^ SECOND_FIRST) as usize).map(|&entry| entry.into())
     }
 }
 
@@ -66,8 +95,22 @@ impl Iterator for Met<'_> {
 
     #[inline(always)]
     fn next(&mut self) -> Option<u32> {
-        let index = self.ahead()?;
-        self.next = index + 1;
-        Some(self.references.get(index))
+        loop {
+            let entry = self.entry()?;
+            self.next += 1;
+            if entry & self.on_the_way == 0 {
+                self.number = self.number.wrapping_add(entry & 0xff);
+            } else if entry < JUMP {
+                self.number = self.number.wrapping_add(entry & 0xff);
+                return Some(self.number);
+            } else {
+                let mut far = entry & 0x7f;
+                while let Some(entry) = self.entry().filter(|&entry| entry >= JUMP) {
+                    self.next += 1;
+                    far = far << 7 | entry & 0x7f;
+                }
+                self.number = far << 7;
+            }
+        }
     }
 }

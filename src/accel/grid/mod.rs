@@ -1,7 +1,7 @@
 //! The uniform grid: space in equal cells, quick to build and the least work per ray where primitives lie evenly.
 //!
 //! One table and one list, without pointers, after Lagae and Dutré, *Compact, fast and robust grids for ray tracing*,
-//! 2008: cells are counted, the counts summed, and the references filled in from behind. A [`Grid`] is made by
+//! 2008: cells are counted, the counts summed, and the references filled in from behind; then they are packed ([`Met`]). A [`Grid`] is made by
 //! [`Grid::build`] or checked by [`Grid::open`]; after either, no walk can leave its words or fail to end.
 
 mod build;
@@ -12,7 +12,6 @@ mod line;
 mod met;
 mod open;
 mod options;
-mod order;
 mod resolution;
 mod sweep;
 mod traverse;
@@ -22,7 +21,7 @@ pub use options::{Form, Options};
 pub use traverse::GridTraversal;
 
 use self::{cells::Cells, course::Course};
-use super::{Accelerator, Cell, Hierarchy, Inside, Leaf, leaf::References};
+use super::{Accelerator, Cell, Hierarchy, Inside};
 use crate::{
     arena::Arena,
     asset::{Asset, Stored},
@@ -57,9 +56,8 @@ const MAX_COUNT: u32 = 1 << 28;
 pub struct Grid<'a> {
     words: &'a [u32],
     cells: Cells<'a>,
-    references: References<'a>,
-    /// A byte per reference: in which octants of the cell the primitive is. Along x it counts 4, along y 2, along z 1.
-    octants: &'a [u8],
+    /// Of all cells: see [`met`].
+    entries: &'a [u16],
     reference_count: u32,
     primitives: u32,
     resolution: [u32; 3],
@@ -100,8 +98,7 @@ impl<'a> Grid<'a> {
         Self {
             words: &[],
             cells: Cells::NONE,
-            references: References::IDENTITY,
-            octants: &[],
+            entries: &[],
             reference_count: 0,
             primitives: 0,
             resolution: [1; 3],
@@ -123,7 +120,7 @@ impl<'a> Grid<'a> {
         self.resolution
     }
 
-    /// How many references its cells hold.
+    /// How many references its cells hold, or somewhat more: a number far above the last one in its cell counts twice.
     #[must_use]
     pub const fn reference_count(&self) -> usize {
         self.reference_count as usize
@@ -162,14 +159,14 @@ pub struct Block {
 /// Blocks of cells, halved along their longest side until there is one cell.
 impl<'a> Hierarchy for Grid<'a> {
     type Node = Block;
-    type Leaf = Leaf<'a>;
+    type Leaf = Met<'a>;
 
     fn root(&self) -> Option<Cell<Block>> {
         let node = Block { first: [0; 3], count: self.resolution };
         (self.primitives > 0).then_some(Cell { bounds: self.bounds, node })
     }
 
-    fn open(&self, cell: &Cell<Block>) -> Inside<Block, Leaf<'a>> {
+    fn open(&self, cell: &Cell<Block>) -> Inside<Block, Met<'a>> {
         let Block { first: [x, y, z], count: [nx, ny, nz] } = cell.node;
         let axis = if nx >= ny && nx >= nz {
             Axis::X
@@ -184,8 +181,8 @@ impl<'a> Hierarchy for Grid<'a> {
             Axis::Z => (z, nz),
         };
         if count <= 1 {
-            let (first, count) = self.cells.of(cells::index(self.resolution, [x, y, z])).unwrap_or((0, 0));
-            return Inside::Leaf(Leaf::of(self.references, first, count));
+            let (first, end) = self.cells.of(cells::index(self.resolution, [x, y, z])).unwrap_or((0, 0));
+            return Inside::Leaf(Met::new(self.entries, first, end, 0xff));
         }
         let half = count / 2;
         let with = |first: u32, count: u32| match axis {

@@ -4,14 +4,17 @@ use glam::Vec3;
 
 use super::{
     Grid, HEADER_WORDS, MAX_COUNT, MAX_RESOLUTION,
-    cells::{Cells, OFFSET, block_words, narrow_offsets, narrow_references, number_words, reference_words},
+    cells::{Cells, OFFSET, block_words, group, list_words, narrow_offsets, number_words},
     course::Course,
     cover::Frame,
-    met::octants_of,
+    met::{Met, octants_of},
     options::Form,
 };
 use crate::{
-    accel::{Malformed, Reason, leaf::References},
+    accel::{
+        Malformed, Reason,
+        leaf::{References, SECOND_FIRST},
+    },
     asset,
     geometry::Aabb,
 };
@@ -19,7 +22,8 @@ use crate::{
 /// The header as it stands in the words.
 pub(super) struct Header {
     pub(super) primitives: u32,
-    pub(super) references: u32,
+    /// The last offset.
+    pub(super) listed: u32,
     /// Offsets before the last.
     pub(super) entries: u32,
     pub(super) form: Form,
@@ -37,12 +41,12 @@ impl Header {
             Form::Bitmask => 1,
             Form::Octants => 2,
         };
-        [self.primitives, self.references, self.entries, form, nx, ny, nz, x0, y0, z0, x1, y1, z1]
+        [self.primitives, self.listed, self.entries, form, nx, ny, nz, x0, y0, z0, x1, y1, z1]
     }
 
     fn from_words(words: &[u32]) -> Result<Self, (usize, Reason)> {
         let words = words.first_chunk::<HEADER_WORDS>().ok_or((0, Reason::Length))?;
-        let &[primitives, references, entries, form, nx, ny, nz, x0, y0, z0, x1, y1, z1] = words;
+        let &[primitives, listed, entries, form, nx, ny, nz, x0, y0, z0, x1, y1, z1] = words;
         let form = match form {
             0 => Form::Full,
             1 => Form::Bitmask,
@@ -51,7 +55,7 @@ impl Header {
         };
         let corner = |bits: [u32; 3]| Vec3::from_array(bits.map(f32::from_bits));
         let bounds = Aabb::new(corner([x0, y0, z0]), corner([x1, y1, z1]));
-        Ok(Self { primitives, references, entries, form, resolution: [nx, ny, nz], bounds })
+        Ok(Self { primitives, listed, entries, form, resolution: [nx, ny, nz], bounds })
     }
 }
 
@@ -79,14 +83,12 @@ impl<'a> Grid<'a> {
         }
         let grid = Self::view(words).ok_or(malformed((0, Reason::Length)))?;
         grid.check_table(&header, frame.cells()).map_err(malformed)?;
-        let references =
-            words.len().saturating_sub(reference_words(header.references as usize, header.primitives as usize));
-        for index in 0..header.references {
-            if grid.references.get(index) >= header.primitives {
-                return Err(malformed((references, Reason::Primitive)));
-            }
-        }
-        Ok(grid)
+        // Numbers are counted from the beginning of each list.
+        let is_sound = (0..frame.cells() as u32).filter_map(|cell| grid.cells.of(cell)).all(|(first, end)| {
+            Met::new(grid.entries, first, end, 0xff).all(|primitive| primitive < header.primitives)
+        });
+        let lists = words.len().saturating_sub(grid.entries.len() / 2);
+        if is_sound { Ok(grid) } else { Err(malformed((lists, Reason::Primitive))) }
     }
 
     /// One pass over blocks and offsets: ranks equal the occupied cells so far, and offsets never fall.
@@ -102,7 +104,7 @@ impl<'a> Grid<'a> {
             }
             rank += bits.count_ones();
         }
-        let entries = if header.form == Form::Bitmask { rank as usize } else { cells };
+        let entries = if self.cells.blocks.is_empty() { cells } else { rank as usize };
         if entries != header.entries as usize {
             return Err((2, Reason::Header));
         }
@@ -111,12 +113,13 @@ impl<'a> Grid<'a> {
             let word = self.cells.offsets.get(entry);
             let offset = word & self.cells.mask;
             let first = entry == 0 && offset != 0;
-            let last = entry == header.entries && offset != header.references;
-            if first || last || offset < least || offset > header.references {
+            let last = entry == header.entries && offset != header.listed;
+            if first || last || offset < least || offset > header.listed {
                 return Err((HEADER_WORDS + self.cells.blocks.len(), Reason::References));
             }
             if header.form == Form::Octants {
-                let octants = (least..offset).fold(0, |all, index| all | octants_of(self.octants, index).unwrap_or(0));
+                let at = |index: u32| self.entries.get((index ^ SECOND_FIRST) as usize).copied().unwrap_or(0);
+                let octants = (least..offset).fold(0, |all, index| all | octants_of(at(index)));
                 if octants != said {
                     return Err((HEADER_WORDS + entry as usize, Reason::References));
                 }
@@ -132,26 +135,21 @@ impl<'a> Grid<'a> {
     pub(super) fn view(words: &'a [u32]) -> Option<Self> {
         let header = Header::from_words(words).ok()?;
         let frame = Frame::new(&header.bounds, header.resolution);
-        let (count, entries) = (header.references as usize, header.entries as usize);
+        let (count, entries) = (header.listed as usize, header.entries as usize);
         let (_, rest) = words.split_at_checked(HEADER_WORDS)?;
         let (blocks, rest) = rest.split_at_checked(block_words(header.form, frame.cells()))?;
         let narrow = narrow_offsets(header.form, count);
-        let (offsets, references) = rest.split_at_checked(number_words(entries.checked_add(1)?, narrow))?;
+        let (offsets, entries_of) = rest.split_at_checked(number_words(entries.checked_add(1)?, narrow))?;
         let offsets = if narrow { References::narrow(offsets) } else { References::wide(offsets) };
-        let narrow = narrow_references(header.primitives as usize);
-        // None where each is its own number.
-        let is_ordered = header.primitives == header.references && references.len() == count.div_ceil(4);
-        let words_of = if is_ordered { 0 } else { number_words(count, narrow) };
-        let (references, octants) = references.split_at_checked(words_of)?;
-        if octants.len() != count.div_ceil(4) {
+        if entries_of.len() != list_words(header.form, count, header.primitives as usize) {
             return None;
         }
+        let mask = if header.form == Form::Octants { OFFSET } else { u32::MAX };
         Some(Self {
             words,
-            cells: Cells { blocks, offsets, mask: if header.form == Form::Octants { OFFSET } else { u32::MAX } },
-            references: if narrow { References::narrow(references) } else { References::wide(references) },
-            octants: bytemuck::try_cast_slice(octants).ok()?,
-            reference_count: header.references,
+            cells: Cells { blocks, offsets, mask, group: group(header.form, header.primitives as usize) },
+            entries: bytemuck::must_cast_slice(entries_of),
+            reference_count: header.listed,
             primitives: header.primitives,
             resolution: header.resolution,
             bounds: header.bounds,

@@ -1,8 +1,8 @@
 //! The walk to the end of a ray at once, for queries that do not pause.
 //!
 //! Parameters are sums in registers, as in Amanatides and Woo's paper, and decide only what roundings cannot change:
-//! crossings come in their order if each is later than the last by more than a margin. Where one is not, the cursor
-//! begins anew and decides everything.
+//! crossings come in their order if each is later than the last by more than a margin. Of two that are closer, both
+//! orders are taken. Where three are, the cursor begins anew and decides everything.
 
 use super::{
     Grid,
@@ -48,6 +48,19 @@ impl<'c> Crossings<'c> {
         }
     }
 
+    /// Crosses the next plane or goes back across the last, if a bit says so.
+    #[inline(always)]
+    fn turn(&mut self, turned: u32, axis: Axis, at: &mut u32) {
+        if turned >> axis as u32 & 1 != 0 {
+            self.next += self.step;
+            *at = at.wrapping_add(self.stride);
+        }
+        if turned >> (axis as u32 + 3) & 1 != 0 {
+            self.next -= self.step;
+            *at = at.wrapping_sub(self.stride);
+        }
+    }
+
     /// Crosses the next plane.
     #[inline(always)]
     fn cross(&mut self, clear: &mut f32, end: f32, margin: f32, at: &mut u32) -> Crossed {
@@ -62,6 +75,26 @@ impl<'c> Crossings<'c> {
         self.next = t + self.step;
         *at = at.wrapping_add(self.stride);
         Crossed::Clear
+    }
+}
+
+/// What takes the next plane and the last one in their other order, by [`Crossings::turn`]: a bit for the axis of the next one, and
+/// above them a bit for that of the last; nothing if others are close to them.
+#[cold]
+#[inline(never)]
+fn turned(x: f32, x_step: f32, y: f32, y_step: f32, z: f32, z_step: f32, margin: f32) -> u32 {
+    let t = least(least(x, y), z);
+    let (past, ahead) = (t - 2.0 * margin, t + 2.0 * margin);
+    // Written so that NaN is close.
+    let [x, y, z] = [(x, x_step), (y, y_step), (z, z_step)].map(|(next, step)| {
+        let (is_next, is_last) = (!(next > ahead), !(next - step < past));
+        u32::from(is_next) | u32::from(is_last) << 3
+    });
+    let close = x | y << 1 | z << 2;
+    match close {
+        // Of two axes, one bit each.
+        0o12 | 0o14 | 0o21 | 0o24 | 0o41 | 0o42 => close,
+        _ => 0,
     }
 }
 
@@ -163,7 +196,7 @@ impl<'c> Sweep<'c> {
             at = at.wrapping_add(line.side.number).wrapping_add(before.wrapping_mul(line.stride));
             line.next = (line.next + line.step) + before as i32 as f32 * line.step;
         }
-        Some(Self { x, y, z, at, clear: enter, margin, behind: exit - 0.5 * margin })
+        Some(Self { x, y, z, at, clear: enter - 2.0 * margin, margin, behind: exit - 0.5 * margin })
     }
 
     /// To the end of the ray; false if that is not reached, because two crossings are close.
@@ -194,7 +227,16 @@ impl<'c> Sweep<'c> {
             };
             match crossed {
                 Crossed::Clear => {}
-                Crossed::Close => return false,
+                Crossed::Close => {
+                    let turned = turned(x.next, x.step, y.next, y.step, z.next, z.step, margin);
+                    if turned == 0 {
+                        return false;
+                    }
+                    x.turn(turned, Axis::X, &mut at);
+                    y.turn(turned, Axis::Y, &mut at);
+                    z.turn(turned, Axis::Z, &mut at);
+                    clear = least(least(x.next, y.next), z.next) - margin;
+                }
                 // Behind what is wanted.
                 Crossed::End if end < behind => return true,
                 // Out of the last cell, if no other crossing is near.
@@ -230,9 +272,8 @@ impl<'a> Grid<'a> {
         visit: &mut impl FnMut(Met<'a>) -> Option<f32>,
     ) {
         let Some(sweep) = Sweep::of(&self.course, ray) else { return };
-        let is_done = sweep.run(table, t_max, |(first, end), octants| {
-            visit(Met::new(self.references, self.octants, first, end, octants))
-        });
+        let is_done =
+            sweep.run(table, t_max, |(first, end), octants| visit(Met::new(self.entries, first, end, octants)));
         if !is_done {
             self.walk(ray, t_max, visit);
         }

@@ -7,7 +7,6 @@ use super::{
 use crate::{
     accel::{
         Step, Traversal,
-        leaf::References,
         segment::{Segment, slack_within},
     },
     geometry::{Axis, AxisView, Lattice, PreparedRay, beyond},
@@ -24,8 +23,7 @@ use crate::{
 #[derive(Clone, Debug)]
 pub struct GridTraversal<'a> {
     cells: Cells<'a>,
-    references: References<'a>,
-    octants: &'a [u8],
+    entries: &'a [u16],
     lattice: Lattice,
     /// Where the walk is along each axis.
     lines: [Line; 3],
@@ -98,8 +96,7 @@ impl<'a> GridTraversal<'a> {
         };
         Self {
             cells: grid.cells,
-            references: grid.references,
-            octants: grid.octants,
+            entries: grid.entries,
             lattice: grid.lattice,
             lines: [x, y, z],
             enter,
@@ -245,10 +242,8 @@ impl<'a> GridTraversal<'a> {
                     *budget -= 1;
                 }
                 let cell = self.next_tied();
-                if let Some((first, count)) = self.cells.of(cell)
-                    && let Some(met) = Met::of(self.references, self.octants, first, first.saturating_add(count), 0xff)
-                {
-                    return Step::Leaf(met);
+                if let Some((first, end)) = self.cells.of(cell) {
+                    return Step::Leaf(Met::new(self.entries, first, end, 0xff));
                 }
                 continue;
             }
@@ -266,11 +261,10 @@ impl<'a> GridTraversal<'a> {
                         }
                         *budget -= 1;
                     }
-                    if let Some((first, count)) = self.cells.of(at) {
+                    if let Some((first, end)) = self.cells.of(at) {
                         let octants = self.on_the_way(ray, enter, limit);
-                        if let Some(met) =
-                            Met::of(self.references, self.octants, first, first.saturating_add(count), octants)
-                        {
+                        if octants != 0 {
+                            let met = Met::new(self.entries, first, end, octants);
                             break (Next::Plane, Some(Step::Leaf(met)));
                         }
                     }

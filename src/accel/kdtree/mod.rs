@@ -11,7 +11,6 @@ mod form;
 mod node;
 mod open;
 mod options;
-mod order;
 mod pack;
 mod split;
 mod stage;

@@ -75,8 +75,6 @@ impl<'a> KdTree<'a> {
         // Right children to come, with their depths.
         let mut pending: heapless::Vec<(u32, u32), MAX_DEPTH> = heapless::Vec::new();
         let (mut references, mut depth) = (0_u32, 0_u32);
-        // Where there are no references, leaves of several, and with them all others, are ranges of the primitives.
-        let is_ordered = self.is_ordered();
         let mut ended = false;
         for (index, node) in self.nodes.iter().enumerate() {
             let error =
@@ -105,7 +103,7 @@ impl<'a> KdTree<'a> {
                     if count == 1 && first >= self.primitives {
                         return Err(error(Reason::Primitive));
                     }
-                    if count > 1 || is_ordered && count == 1 {
+                    if count > 1 {
                         if first != references {
                             return Err(error(Reason::References));
                         }
@@ -123,7 +121,7 @@ impl<'a> KdTree<'a> {
         if !ended {
             return Err(end);
         }
-        if references != if is_ordered { self.primitives } else { self.reference_count } {
+        if references != self.reference_count {
             return Err(Malformed { reason: Reason::References, ..end });
         }
         Ok(())

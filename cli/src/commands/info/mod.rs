@@ -48,7 +48,6 @@ impl Info {
         let mut text = format!("{}\n", self.model.display());
         describe_mesh(&mut text, &view, &anatomy);
         describe_lattice(&mut text, &source, &view);
-        describe_soup(&mut text, &view);
         describe_structure(&mut text, &built, &view)?;
         self.describe_instancing(&mut text, &source, &built, &view)?;
         let mut asset = None;
@@ -154,14 +153,6 @@ fn describe_lattice(text: &mut String, source: &Source, view: &View<'_>) {
     } else if let Source::Model(_) = source {
         let displacement = bake::lattice(&view.mesh).displacement;
         line(text, "on a lattice", format!("vertices would move by up to {displacement}"));
-    }
-}
-
-/// How often the triangles of a soup stand in it.
-fn describe_soup(text: &mut String, view: &View<'_>) {
-    if let Some(soup) = &view.soup {
-        let times = f64::from(soup.len()) / f64::from(soup.numbers().max(1));
-        line(text, "soup", format!("{} places, {times:.2} of each triangle", count(soup.len())));
     }
 }
 
