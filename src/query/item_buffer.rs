@@ -11,7 +11,7 @@ use crate::{
 ///
 /// Weghorst, Hooper and Greenberg, *Improved computational methods for ray tracing*, 1984.
 #[derive(Clone, Debug)]
-pub struct ItemBuffer([Hit; RAYS]);
+pub struct ItemBuffer(pub(super) [Hit; RAYS]);
 
 /// As many as a pencil has.
 const RAYS: usize = (Pencil::SIDE * Pencil::SIDE) as usize;

@@ -104,6 +104,10 @@ impl<A: LatticeAccelerator, P: LatticeTriangles> Caster for LatticeScene<A, P> {
         if entries.is_empty() { None } else { Self::closest_hit(self, ray) }
     }
 
+    fn closest_hits(&self, pencil: &Pencil, hits: &mut ItemBuffer) -> bool {
+        Self::closest_hits(self, pencil, hits)
+    }
+
     fn any_hit(&self, ray: &Ray, _depth: u32) -> bool {
         Self::any_hit(self, ray)
     }

@@ -28,11 +28,17 @@
 //! a search at D. Nested boxes only take the greatest entry and the least exit, and depths of hits are compared as they are.
 
 mod fixed;
+mod path;
+mod pencil;
+mod projection;
 mod ray;
 mod rays;
+mod sight;
 mod space;
 mod triangle;
 
+pub use path::LatticePath;
+pub(crate) use pencil::LatticePencil;
 pub use ray::LatticeRay;
 pub use rays::LatticeRays;
 pub use space::LatticeSpace;
