@@ -24,7 +24,7 @@ pub use bundle::Bundle;
 
 pub use lattice::Lattice;
 pub use obb::Obb;
-pub(crate) use on_lattice::{Depth, LatticePencil};
+pub(crate) use on_lattice::{Depth, LatticePencil, Sight};
 pub use on_lattice::{LatticePath, LatticeRay, LatticeRays, LatticeSpace};
 pub use pencil::Pencil;
 pub(crate) use pencil::Screen;

@@ -104,6 +104,12 @@ impl Pencil {
         Ray::new(self.origin, self.screen.through([x.saturating_add(column), y.saturating_add(row)]))
     }
 
+    /// The ray of a bit, eight for a row.
+    #[inline]
+    pub(crate) fn numbered(&self, bit: u32) -> Ray {
+        self.ray(bit % Self::SIDE, bit / Self::SIDE)
+    }
+
     /// Where they begin.
     pub(crate) const fn eye(&self) -> Vec3 {
         self.origin

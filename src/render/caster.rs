@@ -96,6 +96,7 @@ impl<A: LatticeAccelerator, P: LatticeTriangles> Caster for LatticeScene<A, P> {
     ///
     /// What a ray hits lies within its rounding of the line that was meant, so that one beside it, of the wider bundle, passes
     /// through. Of origins so far away that the width is lost in them, exits are later by more than that.
+    #[inline(never)] // The wider bundle is not kept.
     fn enter(&self, bundle: &Bundle) -> Entries {
         self.accelerator().enter(&bundle.padded(rounding(self)))
     }

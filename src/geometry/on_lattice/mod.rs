@@ -41,5 +41,6 @@ pub use path::LatticePath;
 pub(crate) use pencil::LatticePencil;
 pub use ray::LatticeRay;
 pub use rays::LatticeRays;
+pub(crate) use sight::Sight;
 pub use space::LatticeSpace;
 pub(crate) use triangle::Depth;

@@ -1,7 +1,7 @@
 use super::{
     LatticePath, LatticeSpace,
     projection::Projection,
-    ray::{LAST, LatticeRay, MIDDLE, View, parameter},
+    ray::{LAST, LatticeRay, MIDDLE, Passing, View, parameter},
     sight::{Line, Sight},
     space::Planes,
 };
@@ -19,7 +19,7 @@ pub(crate) struct LatticePencil {
     /// The depth of the eye, in 2^-8.
     from: i32,
     /// Per axis, the earliest entries of any ray, and the latest exits.
-    views: [[View; 2]; 3],
+    views: [[Passing; 2]; 3],
     /// Where triangles are in the tile.
     pub(crate) projection: Projection,
 }
@@ -54,14 +54,15 @@ impl LatticeSpace {
         }
         let from = Line { major, descends, crossings }.depth_of(&start);
         let mut inside = ((from >> 8).max(0), LAST);
-        let mut views = [[View::along(descends); 2]; 3];
+        let along = View::along(descends);
+        let mut views = [[along.entries(0), along.exits(0)]; 3];
         let mut descending = u32::from(descends) << major as u32;
         for (axis, fan) in [major.next(), major.next().next()].into_iter().zip(fans) {
             let (both, falls) = fan.views(descends)?;
             let [entry, exit] = both;
             let (first, last) = if falls { (LAST, 0) } else { (0, LAST) };
-            inside.0 = inside.0.max(entry.entry(first as u32));
-            inside.1 = inside.1.min(exit.exit(last as u32));
+            inside.0 = inside.0.max(entry.depth(first as u32));
+            inside.1 = inside.1.min(exit.depth(last as u32));
             descending |= u32::from(falls) << axis as u32;
             if let Some(place) = views.get_mut(axis as usize) {
                 *place = both;
@@ -73,10 +74,10 @@ impl LatticeSpace {
         Some(LatticePencil { start, major, descends, descending, inside, from, views, projection })
     }
 
-    /// How a ray of a pencil sees triangles; `None` if it sees none.
+    /// How a ray of a pencil, by its number, sees triangles; `None` if it sees none.
     #[inline(never)]
-    pub(crate) fn sight(&self, pencil: &LatticePencil, ray: &Ray) -> Option<Sight> {
-        Sight::new(&self.line(&pencil.start, ray.direction)?)
+    pub(crate) fn sight(&self, rays: &LatticePencil, pencil: &Pencil, number: u32) -> Option<Sight> {
+        Sight::new(&self.line(&rays.start, pencil.numbered(number).direction)?)
     }
 
     /// The parameter of a ray of a pencil at a depth in 2^-8.
@@ -124,14 +125,14 @@ impl LatticePath for LatticePencil {
 
     #[inline(always)]
     fn entry(&self, axis: u32, plane: u32) -> Option<i32> {
-        let [view, _] = self.views.get(axis as usize)?;
-        Some(view.entry(plane))
+        let [entry, _] = self.views.get(axis as usize)?;
+        Some(entry.depth(plane))
     }
 
     #[inline(always)]
     fn exit(&self, axis: u32, plane: u32) -> Option<i32> {
-        let [_, view] = self.views.get(axis as usize)?;
-        Some(view.exit(plane))
+        let [_, exit] = self.views.get(axis as usize)?;
+        Some(exit.depth(plane))
     }
 }
 
@@ -155,7 +156,8 @@ impl Fan {
     }
 
     /// The earliest entries and the latest exits, and whether higher numbers are met first; none if the lines are far off.
-    fn views(&self, descends: bool) -> Option<([View; 2], bool)> {
+    #[inline(never)]
+    fn views(&self, descends: bool) -> Option<([Passing; 2], bool)> {
         let is_near = |(middle, _): (i32, i32)| middle.unsigned_abs() < FARTHEST;
         if !(is_near(self.least) && is_near(self.most)) {
             return None;
@@ -163,16 +165,17 @@ impl Fan {
         // Along the ray.
         let (down, up) = if descends { (self.most, self.least) } else { (self.least, self.most) };
         let turned = |slope: i32| if descends { -slope } else { slope };
-        let view = |(middle, _), slope| View::across(middle, turned(slope), descends).widened(APART);
+        let entries = |(middle, _), slope| View::across(middle, turned(slope), descends).entries(APART);
+        let exits = |(middle, _), slope| View::across(middle, turned(slope), descends).exits(APART);
         let (falling, rising) = (turned(down.1), turned(up.1));
         Some(if falling >= 0 {
-            ([view(up, rising.max(2)), view(down, falling.max(2))], false)
+            ([entries(up, rising.max(2)), exits(down, falling.max(2))], false)
         } else if rising <= 0 {
-            ([view(down, falling.min(-2)), view(up, rising.min(-2))], true)
+            ([entries(down, falling.min(-2)), exits(up, rising.min(-2))], true)
         } else {
             // What some rise to the others leave for good; below where the lowest ends there is nothing.
             let lowest = (down.0 + falling * MIDDLE) >> LatticeRay::FRACTION;
-            ([view(up, rising.max(2)), View::above(lowest)], false)
+            ([entries(up, rising.max(2)), Passing::above(lowest)], false)
         })
     }
 }

@@ -15,7 +15,7 @@ use crate::{
 pub(crate) struct Projection {
     /// The eye, in 2^-`shift` planes.
     eye: [i32; 3],
-    shift: [u32; 3],
+    shift: [u8; 3],
     /// What a point's way from the eye is multiplied with: to its distance, and its column and row times that.
     rows: [[i32; 3]; 3],
     /// What columns and rows may be off by at any distance, in 2^-6.
@@ -45,6 +45,7 @@ const LAST_PIXEL: i32 = Pencil::SIDE as i32 - 1;
 
 impl LatticeSpace {
     /// Where what is seen from the eye is in a tile; `None` if it is not a camera's, or too far off.
+    #[inline(never)]
     pub(super) fn projection(&self, pencil: &Pencil, start: &Planes) -> Option<Projection> {
         let [corner, right, down] = pencil.steps();
         let size = pencil.size();
@@ -82,6 +83,7 @@ impl LatticeSpace {
         let unit = shift.map(|shift| scale * (1_u64 << (32 - shift)) as f32);
         let rows = rows.map(|row| (row * Vec3::from_array(unit)).to_array().map(|x| x as i32));
         let fuzz = (coarse / crate::math::sqrt(least) * (1.0 / 2048.0)) as i32 + 3;
+        let shift = shift.map(|shift| shift as u8);
         Some(Projection { eye, shift, rows, fuzz, blur })
     }
 }

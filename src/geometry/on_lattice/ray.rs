@@ -68,19 +68,18 @@ impl View {
         depth >> (self.shift & 31)
     }
 
-    /// The same where planes may be off by so many more steps.
-    pub(super) const fn widened(self, steps: i32) -> Self {
-        let slack = steps * self.factor.abs();
-        Self { entry: self.entry - slack, exit: self.exit + slack, ..self }
+    /// The earliest entries where planes may be off by so many more steps.
+    pub(super) const fn entries(&self, steps: i32) -> Passing {
+        Passing {
+            constant: self.entry - steps * self.factor.abs(),
+            factor: self.factor as i16,
+            shift: self.shift as u8,
+        }
     }
 
-    /// Of rays that never leave what is before a plane, above the lowest that any of them is at.
-    pub(super) const fn above(lowest: i32) -> Self {
-        // A plane lower, and it is never entered.
-        const FACTOR: i32 = 1 << 13;
-        const SLACK: i32 = 4 * ACROSS;
-        let exit = (SLACK - if lowest < -SLACK { -SLACK } else { lowest }) * FACTOR;
-        Self { factor: FACTOR, entry: i32::MIN / 4, exit, shift: 0 }
+    /// And the latest exits.
+    pub(super) const fn exits(&self, steps: i32) -> Passing {
+        Passing { constant: self.exit + steps * self.factor.abs(), factor: self.factor as i16, shift: self.shift as u8 }
     }
 
     /// The planes of the major axis itself.
@@ -108,6 +107,30 @@ impl View {
     /// Whether the ray meets higher numbers first.
     pub(super) const fn descends(&self) -> bool {
         self.factor < 0
+    }
+}
+
+/// One bound of a [`View`], in 8 bytes.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Passing {
+    constant: i32,
+    factor: i16,
+    shift: u8,
+}
+
+impl Passing {
+    /// The depth at a plane.
+    #[inline(always)]
+    pub(super) const fn depth(&self, plane: u32) -> i32 {
+        (plane as i32).wrapping_mul(self.factor as i32).wrapping_add(self.constant) >> (self.shift & 31)
+    }
+
+    /// The latest exits of rays that never leave what is before a plane, above the lowest that any of them is at.
+    pub(super) const fn above(lowest: i32) -> Self {
+        // A plane lower, and it is never entered.
+        const SLACK: i32 = 4 * ACROSS;
+        let lowest = if lowest < -SLACK { -SLACK } else { lowest };
+        Self { constant: (SLACK - lowest) << 13, factor: 1 << 13, shift: 0 }
     }
 }
 

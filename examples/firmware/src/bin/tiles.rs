@@ -36,7 +36,8 @@ fn plain<S: Caster>(scene: &S, camera: &Camera, tile: Tile, hits: &mut [Option<H
 /// The same of all pixels at once, or else begun together; whether at once.
 #[inline(never)]
 fn tiled<S: Caster>(scene: &S, camera: &Camera, tile: Tile, items: &mut ItemBuffer, hits: &mut [Option<Hit>]) -> bool {
-    let at_once = camera.pencil(&tile, SIDE, SIDE).is_some_and(|pencil| scene.closest_hits(&pencil, items));
+    let pencil = camera.pencil(&tile, SIDE, SIDE);
+    let at_once = pencil.as_ref().is_some_and(|pencil| scene.closest_hits(pencil, items));
     if !at_once {
         begun(scene, camera, tile, 1, hits);
     }
