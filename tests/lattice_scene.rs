@@ -218,7 +218,7 @@ fn rays_of_a_tile_hit_at_once_what_they_hit_alone() {
             let camera = camera(&mut random, &mesh, &positions);
             let picture @ [width, height] = random.pick(&[[240, 240], [64, 48], [8, 8], [1, 1], [2000, 30], [7, 7]]);
             let at = |random: &mut Random, side: u32| match random.below(2) {
-                0 => side / 2 & !7,
+                0 => (side / 2) & !7,
                 _ => random.below(side as usize) as u32,
             };
             let (x, y) = (at(&mut random, width), at(&mut random, height));
