@@ -156,3 +156,42 @@ impl Projection {
         rays
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{Aabb, Screen};
+
+    /// Triangles some pixels large, in front of an eye, turned in all ways.
+    #[test]
+    fn candidates_are_the_hits_and_hardly_more() {
+        let space = LatticeSpace::over(&Aabb::new(Vec3::ZERO, Vec3::new(1.0, 0.5, 2.0))).unwrap();
+        let screen = Screen { forward: Vec3::Z, up: Vec3::Y * 0.36, right: Vec3::NEG_X * 0.36, half: [120.0; 2] };
+        let pencil = Pencil::new(Vec3::new(0.4, 0.3, -3.0), screen, [96, 136], [8, 7]).unwrap();
+        let rays = space.pencil(&pencil).unwrap();
+        let mut state = 1_u32;
+        let mut random = |size: i32| {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (state >> 8) as i32 % (2 * size) - size
+        };
+        let (mut hits, mut candidates) = (0, 0);
+        for _ in 0..20_000 {
+            let z = 32_768 + random(20_000);
+            let middle = pencil.ray(4, 4).at(3.0 + z as f32 / 32_767.5);
+            let (x, y) = ((middle.x * 65_535.0) as i32 + random(500), (middle.y * 131_070.0) as i32 + random(1000));
+            let mut corner = || [x + random(5000), y + random(10_000), z + random(5000)].map(|number| number as u16);
+            let corners = [corner(), corner(), corner()];
+            let corners = corners.each_ref();
+            let found = rays.projection.candidates(corners) & pencil.all();
+            candidates += found.count_ones();
+            for bit in (0..64).filter(|bit| pencil.all() >> bit & 1 != 0) {
+                let sight = space.sight(&rays, &pencil, bit);
+                if sight.is_some_and(|sight| sight.crossing(corners).is_some()) {
+                    hits += 1;
+                    assert_ne!(found >> bit & 1, 0, "{corners:?} {bit}");
+                }
+            }
+        }
+        assert!(hits > 50_000 && candidates < hits + hits / 8, "{hits} {candidates}");
+    }
+}
