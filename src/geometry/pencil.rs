@@ -104,6 +104,35 @@ impl Pencil {
         Ray::new(self.origin, self.screen.through([x.saturating_add(column), y.saturating_add(row)]))
     }
 
+    /// The ray of a bit, eight for a row.
+    #[inline]
+    pub(crate) fn numbered(&self, bit: u32) -> Ray {
+        self.ray(bit % Self::SIDE, bit / Self::SIDE)
+    }
+
+    /// Where they begin.
+    pub(crate) const fn eye(&self) -> Vec3 {
+        self.origin
+    }
+
+    /// The directions to the outer corners of the pixels.
+    pub(crate) fn corners(&self) -> [Vec3; 4] {
+        let ([left, top], [right, bottom]) = (self.first, [self.columns, self.rows]);
+        let through = |x: u32, y: u32| self.screen.forward + self.screen.across(x as f32, y as f32);
+        let (right, bottom) = (left.saturating_add(right), top.saturating_add(bottom));
+        [through(left, top), through(right, top), through(left, bottom), through(right, bottom)]
+    }
+
+    /// The direction of the first ray, and what it changes by from a column and a row to the next.
+    pub(crate) const fn steps(&self) -> [Vec3; 3] {
+        [self.corner, self.right, self.down]
+    }
+
+    /// More than the magnitudes of all that any coordinate of a direction is summed from.
+    pub(crate) const fn size(&self) -> f32 {
+        self.size
+    }
+
     /// All of the rays; none if they are to be looked at one by one.
     #[must_use]
     pub fn bundle(&self) -> Option<Bundle> {

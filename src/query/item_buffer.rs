@@ -11,7 +11,7 @@ use crate::{
 ///
 /// Weghorst, Hooper and Greenberg, *Improved computational methods for ray tracing*, 1984.
 #[derive(Clone, Debug)]
-pub struct ItemBuffer([Hit; RAYS]);
+pub struct ItemBuffer(pub(super) [Hit; RAYS]);
 
 /// As many as a pencil has.
 const RAYS: usize = (Pencil::SIDE * Pencil::SIDE) as usize;
@@ -112,7 +112,7 @@ impl<A: Accelerator, P: Primitives> Scene<A, P> {
                     {
                         continue;
                     }
-                    let prepared = PreparedRay::here(&pencil.ray(number % Pencil::SIDE, number / Pencil::SIDE));
+                    let prepared = PreparedRay::here(&pencil.numbered(number));
                     let Some(ray) = prepared.as_ref() else { continue };
                     if let Some(hit) = self.intersect(index, ray, Span::new(start_of(ray), *best)) {
                         missing -= u32::from(best.primitive == u32::MAX);

@@ -191,7 +191,8 @@ impl<'a, S: Caster + ?Sized> Renderer<'a, S> {
         }
         let mut hits = ItemBuffer::new();
         for part in tile.parts(PATCH, PATCH) {
-            let at_once = self.pencil(&part).is_some_and(|pencil| self.scene.closest_hits(&pencil, &mut hits));
+            let pencil = self.pencil(&part);
+            let at_once = pencil.as_ref().is_some_and(|pencil| self.scene.closest_hits(pencil, &mut hits));
             let patch = if at_once { Patch::begun(*self) } else { self.patch(part) };
             for (x, y) in part.pixels() {
                 let index = (y - tile.y) as usize * tile.width as usize + (x - tile.x) as usize;
