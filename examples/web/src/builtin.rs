@@ -2,7 +2,7 @@ use std::f32::consts::TAU;
 
 use hitscan::{
     geometry::{Aabb, Sphere},
-    glam::{EulerRot, Mat3, Quat, Vec3},
+    glam::{Mat3, Quat, Vec3},
     render::Material,
 };
 
@@ -135,7 +135,7 @@ fn terrain() -> Model {
     let mut scale = 1.0;
     let waves: Vec<(Mat3, f32)> = (0..6)
         .map(|octave| {
-            let frame = Mat3::from_euler(EulerRot::YXZ, octave as f32 * 1.3, 0.0, 0.0);
+            let frame = Mat3::from_rotation_y(octave as f32 * 1.3);
             let wave = (frame * (2.1 * scale), 0.32 / scale);
             scale *= 1.9;
             wave
