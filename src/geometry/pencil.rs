@@ -125,8 +125,8 @@ impl Pencil {
     #[inline]
     #[must_use]
     pub fn ray(&self, column: u32, row: u32) -> Ray {
-        let [x, y] = self.places;
-        let at = |places: [f32; Self::SIDE as usize], number: u32| places[(number % Self::SIDE) as usize];
+        let [x, y] = &self.places;
+        let at = |places: &[f32; Self::SIDE as usize], number: u32| places[(number % Self::SIDE) as usize];
         Ray::new(self.origin, self.screen.through([at(x, column), at(y, row)]))
     }
 
