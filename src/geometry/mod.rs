@@ -27,7 +27,7 @@ pub use obb::Obb;
 pub(crate) use on_lattice::{Depth, LatticePencil, Sight};
 pub use on_lattice::{LatticePath, LatticeRay, LatticeRays, LatticeSpace};
 pub use pencil::Pencil;
-pub(crate) use pencil::Screen;
+pub(crate) use pencil::{Screen, place};
 pub(crate) use ray::{AxisView, beyond, descends, slack};
 pub use ray::{PreparedRay, Ray};
 pub use sphere::Sphere;

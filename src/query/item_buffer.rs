@@ -41,6 +41,24 @@ impl ItemBuffer {
         (hit.primitive != u32::MAX).then_some(hit)
     }
 
+    /// Gives the ray in a column and a row this hit if it comes before its own: one with something else than was asked.
+    ///
+    /// ```
+    /// use hitscan::{Hit, query::ItemBuffer};
+    /// let mut hits = ItemBuffer::new();
+    /// hits.offer(3, 5, Hit { t: 2.0, primitive: 7 });
+    /// hits.offer(3, 5, Hit { t: 2.0, primitive: 8 });
+    /// assert_eq!(hits.get(3, 5), Some(Hit { t: 2.0, primitive: 7 }));
+    /// ```
+    pub fn offer(&mut self, column: u32, row: u32, hit: Hit) {
+        let row = self.0.chunks_mut(Pencil::SIDE as usize).nth(row as usize);
+        if let Some(own) = row.and_then(|row| row.get_mut(column as usize))
+            && hit.precedes(own)
+        {
+            *own = hit;
+        }
+    }
+
     /// The parameter behind which nothing matters to any of these rays.
     fn end(&self, rays: u64) -> f32 {
         let hits = self.0.iter().enumerate().filter(|(ray, _)| rays >> ray & 1 != 0);

@@ -179,6 +179,7 @@ fn cast<A: Accelerator, P: Primitives, E>(scene: Result<Scene<A, P>, E>) {
     let camera = Camera::pinhole(vector(), vector(), vector(), float());
     if let Some(pencil) = camera.pencil(&Tile { x: word(), y: word(), width: 8, height: 8 }, word(), word()) {
         let mut items = ItemBuffer::new();
+        items.offer(word(), word(), hit);
         black_box((
             scene.closest_hits(&pencil, &mut items),
             items.get(word(), word()),
