@@ -141,12 +141,11 @@ impl Pencil {
         self.origin
     }
 
-    /// The directions to the outer corners of the pixels.
+    /// The directions of four rays half a step around all others.
     pub(crate) fn corners(&self) -> [Vec3; 4] {
-        let ([left, top], [right, bottom]) = (self.first, [self.columns, self.rows]);
-        let through = |x: u32, y: u32| self.screen.forward + self.screen.across(x as f32, y as f32);
-        let (right, bottom) = (left.saturating_add(right), top.saturating_add(bottom));
-        [through(left, top), through(right, top), through(left, bottom), through(right, bottom)]
+        let [right, bottom] = [self.columns, self.rows].map(|count| count as f32 - 0.5);
+        let through = |x: f32, y: f32| self.corner + self.right * x + self.down * y;
+        [through(-0.5, -0.5), through(right, -0.5), through(-0.5, bottom), through(right, bottom)]
     }
 
     /// The direction of the first ray, and what it changes by from a column and a row to the next.

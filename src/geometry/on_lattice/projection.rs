@@ -167,7 +167,7 @@ mod tests {
     fn candidates_are_the_hits_and_hardly_more() {
         let space = LatticeSpace::over(&Aabb::new(Vec3::ZERO, Vec3::new(1.0, 0.5, 2.0))).unwrap();
         let screen = Screen { forward: Vec3::Z, up: Vec3::Y * 0.36, right: Vec3::NEG_X * 0.36, half: [120.0; 2] };
-        let pencil = Pencil::new(Vec3::new(0.4, 0.3, -3.0), screen, [96, 136], [8, 7]).unwrap();
+        let pencil = Pencil::new(Vec3::new(0.4, 0.3, -3.0), screen, [96, 136], [8, 7], 1).unwrap();
         let rays = space.pencil(&pencil).unwrap();
         let mut state = 1_u32;
         let mut random = |size: i32| {
