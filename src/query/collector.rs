@@ -45,14 +45,14 @@ pub(crate) const fn end_of(ray: &PreparedRay) -> Hit {
 
 /// Keeps the least hit.
 pub(crate) struct Closest {
-    from: Hit,
+    t_min: f32,
     best: Hit,
 }
 
 impl Closest {
     #[inline(always)]
     pub(crate) const fn new(ray: &PreparedRay) -> Self {
-        Self { from: start_of(ray), best: end_of(ray) }
+        Self { t_min: ray.ray().t_min, best: end_of(ray) }
     }
 
     #[inline(always)]
@@ -64,7 +64,8 @@ impl Closest {
 impl Collector for Closest {
     #[inline(always)]
     fn from(&self) -> Hit {
-        self.from
+        // The number is a constant, which does not have to be compared.
+        Hit { t: self.t_min, primitive: 0 }
     }
 
     #[inline(always)]

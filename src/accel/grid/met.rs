@@ -81,12 +81,14 @@ impl<'a> Met<'a> {
 
     /// The next entry.
     #[inline(always)]
-    fn entry(&self) -> Option<u32> {
+    fn entry(&mut self) -> Option<u32> {
         #[cfg(target_endian = "big")]
         if self.next >= self.end {
             return None;
         }
-        self.entries.get((self.next ^ SECOND_FIRST) as usize).map(|&entry| entry.into())
+        let &entry = self.entries.get((self.next ^ SECOND_FIRST) as usize)?;
+        self.next += 1;
+        Some(entry.into())
     }
 }
 
@@ -96,20 +98,17 @@ impl Iterator for Met<'_> {
     #[inline(always)]
     fn next(&mut self) -> Option<u32> {
         loop {
-            let entry = self.entry()?;
-            self.next += 1;
-            if entry & self.on_the_way == 0 {
-                self.number = self.number.wrapping_add(entry & 0xff);
-            } else if entry < JUMP {
-                self.number = self.number.wrapping_add(entry & 0xff);
-                return Some(self.number);
-            } else {
-                let mut far = entry & 0x7f;
-                while let Some(entry) = self.entry().filter(|&entry| entry >= JUMP) {
-                    self.next += 1;
-                    far = far << 7 | entry & 0x7f;
+            let mut entry = self.entry()?;
+            if entry >= JUMP {
+                self.number = 0;
+                while entry >= JUMP {
+                    self.number = (self.number | entry & 0x7f) << 7;
+                    entry = self.entry()?;
                 }
-                self.number = far << 7;
+            }
+            self.number = self.number.wrapping_add(entry & 0xff);
+            if entry & self.on_the_way != 0 {
+                return Some(self.number);
             }
         }
     }

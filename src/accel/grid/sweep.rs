@@ -69,10 +69,10 @@ impl<'c> Crossings<'c> {
             return Crossed::Close;
         }
         *clear = t + margin;
+        self.next = t + self.step;
         if t > end {
             return Crossed::End;
         }
-        self.next = t + self.step;
         *at = at.wrapping_add(self.stride);
         Crossed::Clear
     }
@@ -104,7 +104,7 @@ enum Crossed {
     Clear,
     /// Nothing: it is close to the crossing before.
     Close,
-    /// Nothing: it is behind the end.
+    /// Nothing but where the plane behind it is crossed: it is behind the end.
     End,
 }
 
@@ -240,11 +240,7 @@ impl<'c> Sweep<'c> {
                 // Behind what is wanted.
                 Crossed::End if end < behind => return true,
                 // Out of the last cell, if no other crossing is near.
-                Crossed::End => {
-                    let is_near = |t: f32| u32::from(!(t > clear));
-                    let [x, y, z] = [x, y, z].map(|line| is_near(line.next) + is_near(line.next + line.step));
-                    return x + y + z == 1;
-                }
+                Crossed::End => return (x.next > clear) & (y.next > clear) & (z.next > clear),
             }
         }
     }
