@@ -149,7 +149,7 @@ impl<A: LatticeAccelerator, P: LatticeTriangles> LatticeScene<A, P> {
     pub fn closest_hit_along(&self, ray: &LatticeRay) -> Option<Hit> {
         // No primitive has the number behind all.
         let mut best = Best { depth: ray.depths.1, number: u32::MAX };
-        let mut walk = self.accelerator.walk(ray);
+        let mut walk = self.accelerator.walk();
         while let Some(leaf) = walk.next_leaf(ray, best.depth >> 8) {
             for index in leaf {
                 if let Some(Depth { depth, front }) = self.crossing(index, ray)
@@ -171,7 +171,7 @@ impl<A: LatticeAccelerator, P: LatticeTriangles> LatticeScene<A, P> {
     #[must_use]
     #[inline(never)]
     pub fn any_hit_along(&self, ray: &LatticeRay) -> bool {
-        let mut walk = self.accelerator.walk(ray);
+        let mut walk = self.accelerator.walk();
         while let Some(mut leaf) = walk.next_leaf(ray, ray.depths.1 >> 8) {
             if leaf.any(|index| self.hits(index, ray)) {
                 return true;
@@ -183,25 +183,25 @@ impl<A: LatticeAccelerator, P: LatticeTriangles> LatticeScene<A, P> {
     /// Where the ray crosses a triangle that it sees.
     #[inline(never)] // Not within the walk: each would keep the other's numbers on the stack.
     fn crossing(&self, index: u32, ray: &LatticeRay) -> Option<Depth> {
-        ray.crossing(self.visible(index, ray)?)
+        ray.sight.crossing(self.visible(index, ray.mask)?)
     }
 
     /// Whether the ray hits a triangle that it sees.
     #[inline(never)]
     fn hits(&self, index: u32, ray: &LatticeRay) -> bool {
-        let side = self.visible(index, ray).and_then(|corners| ray.crosses(corners, ray.depths));
+        let side = self.visible(index, ray.mask).and_then(|corners| ray.sight.crosses(corners, ray.depths));
         side.is_some_and(|front| self.shows(front))
     }
 
-    /// The corners of a triangle that the ray may see.
+    /// The corners of a triangle that a ray of this mask may see.
     #[inline(always)]
-    fn visible(&self, index: u32, ray: &LatticeRay) -> Option<[&[u16; 3]; 3]> {
-        if self.triangles.mask(index) & ray.mask == 0 { None } else { self.triangles.mesh().corners(index) }
+    pub(crate) fn visible(&self, index: u32, mask: u32) -> Option<[&[u16; 3]; 3]> {
+        if self.triangles.mask(index) & mask == 0 { None } else { self.triangles.mesh().corners(index) }
     }
 
     /// Whether triangles can be hit from a side.
     #[inline(always)]
-    fn shows(&self, front: bool) -> bool {
+    pub(crate) fn shows(&self, front: bool) -> bool {
         front || self.triangles.mesh().sides() == Sides::Both
     }
 }

@@ -15,7 +15,8 @@ use hitscan::{
     glam::Vec3,
     kdtree,
     lattice_scene::LatticeError,
-    primitives::{Order, Renumbering, Reordered, Sides},
+    primitives::{LatticeTriangles, Order, Renumbering, Reordered, Sides},
+    query::ItemBuffer,
     render::{Camera, Caster, Color, Light, Renderer, Tile},
     scene::Mismatch,
 };
@@ -140,6 +141,105 @@ fn every_structure_answers_as_the_list() {
     }
 }
 
+/// A camera anywhere: among the triangles, near and far, along axes and not.
+fn camera(random: &mut Random, mesh: &LatticeMesh<'_>, positions: &[Vec3]) -> Camera {
+    let (size, middle) = (mesh.frame().size(), mesh.frame().center());
+    let anywhere = |random: &mut Random, scale: f32| {
+        middle + size * Vec3::from_array([0; 3].map(|_| (random.unit() - 0.5) * scale))
+    };
+    let mut target = random.pick(positions);
+    let scale = random.pick(&[1.0, 3.0, 8.0, 50.0, 1.0e4]);
+    let eye = match random.below(3) {
+        0 => random.pick(positions),
+        1 => anywhere(random, scale),
+        // Near a triangle.
+        _ => target + size * Vec3::from_array([0; 3].map(|_| (random.unit() - 0.5) * random.pick(&[0.1, 1.0e-3]))),
+    };
+    if random.one_in(4) {
+        let axis = random.below(3);
+        target = eye;
+        target[axis] += random.pick(&[1.0, -1.0]) * size[axis];
+    }
+    let up = random.pick(&[Vec3::Y, Vec3::X, Vec3::Z, Vec3::new(0.3, 1.0, -0.2)]);
+    let fov = random.pick(&[0.8, 0.8, 0.3, 0.05, 2.5, 1.0e-3, 1.0e-4, 3.1]);
+    Camera::pinhole(eye, target, up, fov)
+}
+
+/// All rays of a tile at once hit what each hits by itself: rays that hit something, and whether they were at once.
+fn same_at_once<A: LatticeAccelerator, P: LatticeTriangles>(
+    scene: &LatticeScene<A, P>,
+    camera: &Camera,
+    tile: &Tile,
+    picture: [u32; 2],
+    what: &dyn Fn() -> String,
+) -> Option<u32> {
+    let [width, height] = picture;
+    let pencil = camera.pencil(tile, width, height)?;
+    let mut hits = ItemBuffer::new();
+    if !scene.closest_hits(&pencil, &mut hits) {
+        return None;
+    }
+    let mut found = 0;
+    for (x, y) in tile.pixels() {
+        let (column, row) = (x - tile.x, y - tile.y);
+        let plain = scene.closest_hit(&camera.ray(x as f32 + 0.5, y as f32 + 0.5, width, height));
+        let at_once = hits.get(column, row);
+        assert_eq!(bits(at_once), bits(plain), "{camera:?} {tile:?} {picture:?} {column} {row} {}", what());
+        found += u32::from(plain.is_some());
+    }
+    Some(found)
+}
+
+#[test]
+fn rays_of_a_tile_hit_at_once_what_they_hit_alone() {
+    let mut random = Random::new(5 + 100 * seed());
+    let mut memory = vec![0; 1 << 16];
+    let (mut tiles, mut at_once, mut hits) = (0, 0, 0);
+    while tiles < rays(1_000_000) / 10 {
+        let vertices = 3 + random.below(40);
+        let numbers = numbers(&mut random, vertices);
+        let triangles: Vec<[u16; 3]> =
+            (0..1 + random.below(60)).map(|_| [0; 3].map(|_| random.below(vertices) as u16)).collect();
+        let masks: Vec<u32> = triangles.iter().map(|_| random.pick(&[0, 1, 3, u32::MAX])).collect();
+        let frame = random.pick(&[
+            Aabb::new(Vec3::ZERO, Vec3::ONE),
+            Aabb::new(Vec3::ZERO, Vec3::ONE),
+            Aabb::new(Vec3::splat(-32_768.0), Vec3::splat(32_767.0)),
+            Aabb::new(Vec3::new(-3.0, 100.0, -7.0), Vec3::new(9.0, 104.0, -1.0)),
+            Aabb::new(Vec3::new(1.0e9, -5.0, 0.0), Vec3::new(2.0e9, 5.0, 1.0e-9)),
+        ]);
+        let mesh = LatticeMesh::new(&frame, &numbers, &triangles[..]).unwrap();
+        let mesh = mesh.with_masks(&masks).unwrap().with_sides(random.pick(&[Sides::Both, Sides::Front]));
+        let positions: Vec<Vec3> = mesh.positions().collect();
+        let kind = random.pick(&[3, 4]);
+        let Some((plan, built)) = plans::build(&mut random, kind, &mesh, &mut memory) else { continue };
+        let words = built.as_words();
+        for _ in 0..20 {
+            let camera = camera(&mut random, &mesh, &positions);
+            let picture @ [width, height] = random.pick(&[[240, 240], [64, 48], [8, 8], [1, 1], [2000, 30], [7, 7]]);
+            let at = |random: &mut Random, side: u32| match random.below(2) {
+                0 => (side / 2) & !7,
+                _ => random.below(side as usize) as u32,
+            };
+            let (x, y) = (at(&mut random, width), at(&mut random, height));
+            let [columns, rows] = random.pick(&[[8, 8], [8, 8], [1, 1], [7, 7], [8, 1], [3, 5]]);
+            let tile = Tile { x, y, width: columns.min(width - x), height: rows.min(height - y) };
+            let what = || format!("{plan:?} {mesh:?}");
+            let found = if kind == 3 {
+                let scene = LatticeScene::new(CompactKdTree::open(words).unwrap(), &mesh).unwrap();
+                same_at_once(&scene, &camera, &tile, picture, &what)
+            } else {
+                let scene = LatticeScene::new(DualSplit::open(words).unwrap(), &mesh).unwrap();
+                same_at_once(&scene, &camera, &tile, picture, &what)
+            };
+            tiles += 1;
+            at_once += usize::from(found.is_some());
+            hits += found.unwrap_or(0) as usize;
+        }
+    }
+    assert!(at_once * 3 > tiles && hits > tiles, "{hits} hits, {at_once} of {tiles} tiles");
+}
+
 /// A closed surface: a cube of `side`² squares on each face, pushed out to a bumpy ball.
 fn ball(side: u32) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     let mut vertices: Vec<Vec3> = Vec::new();
@@ -194,6 +294,29 @@ fn closed_meshes_do_not_leak() {
         assert!(hit.is_some_and(|hit| hit.t > 0.0) && scene.any_hit(&ray), "{ray:?} {hit:?}");
         // It leaves the surface once more often than it enters it.
         assert!(scene.closest_hit(&Ray { direction: -ray.direction, ..ray }).is_some(), "{ray:?}");
+    }
+}
+
+/// Samples are asked for at once, too: tiles are the pixels, bit for bit.
+#[test]
+fn samples_of_a_tile_are_those_of_its_pixels() {
+    let (vertices, triangles) = ball(12);
+    let mesh = Mesh::new(&vertices, &triangles[..]).unwrap();
+    let snapped = bake::lattice(&mesh);
+    let mesh = snapped.mesh(&mesh).unwrap();
+    let words = bake::build(&mesh, &Plan::DualSplit(dualsplit::Options::fast())).unwrap();
+    let scene = LatticeScene::new(DualSplit::open(&words).unwrap(), &mesh).unwrap();
+    let camera = Camera::pinhole(Vec3::new(0.3, 1.0, 4.0), Vec3::ZERO, Vec3::Y, 0.7);
+    let lights = [Light::directional(Vec3::new(0.3, -1.0, -0.2), Vec3::ONE)];
+    for samples in [1, 2, 3, 8] {
+        let renderer = Renderer::new(&scene, camera, 61, 47).with_samples(samples).with_lights(&lights);
+        for tile in renderer.tiles(13, 9) {
+            let mut filled = vec![Vec3::ZERO; tile.area()];
+            renderer.fill(tile, &mut filled).unwrap();
+            for ((x, y), light) in tile.pixels().zip(filled) {
+                assert_eq!(light, renderer.pixel(x, y), "{samples}: {x} {y}");
+            }
+        }
     }
 }
 

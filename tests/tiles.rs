@@ -4,16 +4,19 @@
 
 mod common;
 
+use std::cell::Cell;
+
 use common::{Random, adversarial_mesh, bits, coordinate, plans, point};
 use hitscan::{
-    List, Mesh, Ray, Scene,
+    Hit, List, Mesh, Ray, Scene,
     accel::{Accelerator, Plan, Structure},
+    asset::Kind,
     bake,
-    geometry::{Aabb, Bundle},
+    geometry::{Aabb, Bundle, Pencil},
     glam::Vec3,
-    primitives::{Primitives, from_fn},
+    primitives::{Primitives, Surface, from_fn},
     query::ItemBuffer,
-    render::{Camera, Light, Renderer, Tile},
+    render::{Camera, Caster, Light, Renderer, Tile},
 };
 
 /// Cameras inside, near and far, along axes and not, with and without perspective, and some that see nothing.
@@ -75,6 +78,77 @@ fn same_at_once<A: Accelerator, P: Primitives>(
         let (at_once, plain) = (hits.get(column, row), scene.closest_hit(&ray));
         assert_eq!(bits(at_once), bits(plain), "{what}: {ray:?} of {pencil:?}");
     }
+}
+
+/// A scene that compares all hits of rays at once with each by itself.
+struct Compared<'a, A, P> {
+    scene: &'a Scene<A, P>,
+    what: &'a str,
+    rays: Cell<u32>,
+}
+
+impl<A: Accelerator, P: Primitives> Caster for Compared<'_, A, P> {
+    fn closest_hit(&self, ray: &Ray, _: u32) -> Option<Hit> {
+        self.scene.closest_hit(ray)
+    }
+
+    fn closest_hits(&self, pencil: &Pencil, hits: &mut ItemBuffer) -> bool {
+        let is_done = self.scene.closest_hits(pencil, hits);
+        for (row, column) in (0..pencil.rows()).flat_map(|row| (0..pencil.columns()).map(move |column| (row, column))) {
+            let (at_once, ray) = (hits.get(column, row), pencil.ray(column, row));
+            if is_done {
+                assert_eq!(bits(at_once), bits(self.scene.closest_hit(&ray)), "{}: {ray:?} of {pencil:?}", self.what);
+                self.rays.set(self.rays.get() + 1);
+            }
+        }
+        is_done
+    }
+
+    fn any_hit(&self, ray: &Ray, _: u32) -> bool {
+        self.scene.any_hit(ray)
+    }
+
+    fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
+        self.scene.surface(ray, hit)
+    }
+
+    fn bounds(&self) -> Aabb {
+        self.scene.bounds()
+    }
+}
+
+/// Samples are asked for at once, too: tiles are the pixels, bit for bit.
+#[test]
+fn samples_of_a_tile_are_those_of_its_pixels() {
+    let mut random = Random::new(44);
+    let mut rays = 0;
+    for round in 0..24 {
+        let family = round % common::FAMILIES;
+        let (vertices, triangles) = adversarial_mesh(&mut random, family, 80);
+        let mesh = Mesh::new(&vertices, triangles.as_slice()).unwrap();
+        let words = bake::build(&mesh, &Plan::KdTree(Default::default())).unwrap();
+        let scene = Scene::new(Structure::open(Kind::KdTree, &words).unwrap(), &mesh).unwrap();
+        let lights = [Light::directional(Vec3::new(0.3, -1.0, 0.2), Vec3::ONE)];
+        for samples in [1, 2, 3, 8, 9] {
+            let camera = camera(&mut random, family, &vertices);
+            let compared = Compared { scene: &scene, what: "samples", rays: Cell::new(0) };
+            let renderer = Renderer::new(&compared, camera, 31, 31).with_samples(samples).with_lights(&lights);
+            let tile = Tile { x: 9, y: 11, width: 5, height: 3 };
+            let mut filled = [Vec3::ZERO; 15];
+            renderer.fill(tile, &mut filled).unwrap();
+            for ((x, y), light) in tile.pixels().zip(filled) {
+                let pixel = renderer.pixel(x, y);
+                assert_eq!(
+                    light.to_array().map(f32::to_bits),
+                    pixel.to_array().map(f32::to_bits),
+                    "{samples}: {x} {y}"
+                );
+            }
+            assert!(samples <= 8 || compared.rays.get() == 0);
+            rays += compared.rays.get();
+        }
+    }
+    assert!(rays > 5_000, "{rays}");
 }
 
 #[test]

@@ -1,4 +1,4 @@
-use crate::geometry::LatticeRay;
+use crate::geometry::LatticePath;
 
 /// A node, and the depths between which a ray is in its cell, in whole planes.
 #[derive(Clone, Copy, Debug)]
@@ -9,10 +9,10 @@ pub(crate) struct LatticeSegment {
 }
 
 impl LatticeSegment {
-    /// The first node, and the part of the ray that is in the lattice.
+    /// The first node, and the part of the path that is in the lattice.
     #[inline(always)]
-    pub(crate) fn whole(ray: &LatticeRay) -> Self {
-        let (enter, exit) = ray.inside;
+    pub(crate) fn whole(path: &impl LatticePath) -> Self {
+        let (enter, exit) = path.inside();
         Self { node: 0, enter: i32::from(enter), exit: i32::from(exit) }
     }
 }

@@ -3,7 +3,7 @@
 use core::ops::Range;
 
 use super::{Accelerator, List};
-use crate::geometry::LatticeRay;
+use crate::geometry::LatticePath;
 
 /// A structure whose planes are those of a lattice over its bounds, or lie between them.
 ///
@@ -12,24 +12,24 @@ pub trait LatticeAccelerator: Accelerator {
     /// What walks it.
     type Walk: LatticeWalk;
 
-    /// A walk at the beginning of `ray`, which all later calls must repeat; it is of the space over the structure's bounds.
-    fn walk(&self, ray: &LatticeRay) -> Self::Walk;
+    /// A walk at its beginning.
+    fn walk(&self) -> Self::Walk;
 }
 
-/// A walk along a ray in whole numbers.
+/// A walk along a ray, or the rays of a tile, in whole numbers.
 pub trait LatticeWalk {
     /// The numbers of the primitives in a leaf.
     type Leaf: Iterator<Item = u32>;
 
-    /// The next leaf that the ray may enter before it is deeper than `depth`, in whole planes of its major axis, which must
-    /// not grow from call to call.
-    fn next_leaf(&mut self, ray: &LatticeRay, depth: i32) -> Option<Self::Leaf>;
+    /// The next leaf that may be entered before `depth`, which must not grow from call to call; the path, of the space over the
+    /// structure's bounds, must be the same.
+    fn next_leaf<P: LatticePath>(&mut self, path: &P, depth: i32) -> Option<Self::Leaf>;
 }
 
 impl LatticeAccelerator for List {
     type Walk = Option<Range<u32>>;
 
-    fn walk(&self, _ray: &LatticeRay) -> Option<Range<u32>> {
+    fn walk(&self) -> Option<Range<u32>> {
         Some(0..self.primitives())
     }
 }
@@ -38,7 +38,7 @@ impl LatticeAccelerator for List {
 impl LatticeWalk for Option<Range<u32>> {
     type Leaf = Range<u32>;
 
-    fn next_leaf(&mut self, _ray: &LatticeRay, _depth: i32) -> Option<Range<u32>> {
+    fn next_leaf<P: LatticePath>(&mut self, _path: &P, _depth: i32) -> Option<Range<u32>> {
         self.take()
     }
 }

@@ -24,10 +24,10 @@ pub use bundle::Bundle;
 
 pub use lattice::Lattice;
 pub use obb::Obb;
-pub(crate) use on_lattice::Depth;
-pub use on_lattice::{LatticeRay, LatticeRays, LatticeSpace};
+pub(crate) use on_lattice::{Depth, LatticePencil, Sight};
+pub use on_lattice::{LatticePath, LatticeRay, LatticeRays, LatticeSpace};
 pub use pencil::Pencil;
-pub(crate) use pencil::Screen;
+pub(crate) use pencil::{Screen, place};
 pub(crate) use ray::{AxisView, beyond, descends, slack};
 pub use ray::{PreparedRay, Ray};
 pub use sphere::Sphere;

@@ -3,15 +3,16 @@ use glam::Vec3;
 use super::{Bundle, Ray, Triangle};
 use crate::math::{greatest, least};
 
-/// Rays from one point through the middles of at most 8 x 8 pixels: what a tile of a picture with perspective is made of.
+/// Rays from one point through at most 8 x 8 points of a picture with perspective: the middles of a tile's pixels, or some
+/// samples of each.
 ///
 /// A [`Camera`](crate::render::Camera) makes them. Together they tell cheaply which of them may hit a triangle.
 #[derive(Clone, Copy, Debug)]
 pub struct Pencil {
     origin: Vec3,
     screen: Screen,
-    /// The first pixel.
-    first: [u32; 2],
+    /// Where the columns and the rows are, in pixels.
+    places: [[f32; Self::SIDE as usize]; 2],
     columns: u32,
     rows: u32,
     /// The direction of the first ray; those of the others lie [within](Self::error) some steps of it.
@@ -46,14 +47,20 @@ impl Screen {
         self.right * u + self.up * v
     }
 
-    fn through(&self, [x, y]: [u32; 2]) -> Vec3 {
-        self.forward + self.across(x as f32 + 0.5, y as f32 + 0.5)
+    fn through(&self, [x, y]: [f32; 2]) -> Vec3 {
+        self.forward + self.across(x, y)
     }
+}
+
+/// Where a sample of a pixel is, in pixels; samples are `step` apart.
+#[inline]
+pub(crate) fn place(pixel: u32, sample: u32, step: f32) -> f32 {
+    pixel as f32 + (sample as f32 + 0.5) * step
 }
 
 /// 2^-18, 64 u: what edge functions may be off by, of the sums of magnitudes that they are made of.
 ///
-/// 16 u of it because directions are rounded, 4 u for the normals' sake, and two dozen for products, steps and sums.
+/// 22 u of it because directions are rounded, 4 u for the normals' sake, and two dozen for products, steps and sums.
 const ERROR: f32 = 1.0 / 262_144.0;
 
 /// Beyond this, products of three lengths may leave the range of `f32`.
@@ -69,8 +76,10 @@ impl Pencil {
     /// Columns and rows at most.
     pub const SIDE: u32 = 8;
 
-    /// The rays from `origin` through `columns` x `rows` pixels; none if these are too many, or none.
-    pub(crate) fn new(origin: Vec3, screen: Screen, first: [u32; 2], [columns, rows]: [u32; 2]) -> Option<Self> {
+    /// The rays from `origin` through so many pixels from the first on, `samples` x `samples` of each; none if they are too
+    /// many, or none.
+    pub(crate) fn new(origin: Vec3, screen: Screen, first: [u32; 2], pixels: [u32; 2], samples: u32) -> Option<Self> {
+        let [columns, rows] = pixels.map(|pixels| pixels.saturating_mul(samples));
         let sides = 1..=Self::SIDE;
         if !(sides.contains(&columns) && sides.contains(&rows)) {
             return None;
@@ -80,8 +89,24 @@ impl Pencil {
         let [x, y] = first.map(|first| (first.saturating_add(Self::SIDE) as f32) / half);
         let size =
             largest(screen.forward) + largest(screen.right) * (x + middle / half) + largest(screen.up) * (y + 2.0);
-        let (right, down) = (screen.right / half, screen.up / -half);
-        Some(Self { origin, screen, first, columns, rows, corner: screen.through(first), right, down, size })
+        let step = 1.0 / samples as f32;
+        let places = first.map(|first| Self::places(first, samples, step));
+        let corner = screen.through(places.map(|[first, ..]| first));
+        let (right, down) = (screen.right * (step / half), screen.up * -(step / half));
+        Some(Self { origin, screen, places, columns, rows, corner, right, down, size })
+    }
+
+    /// Where the samples of pixels are along a side of the picture.
+    fn places(first: u32, samples: u32, step: f32) -> [f32; Self::SIDE as usize] {
+        let (mut pixel, mut sample) = (first, 0);
+        [(); Self::SIDE as usize].map(|()| {
+            let place = place(pixel, sample, step);
+            sample += 1;
+            if sample == samples {
+                (pixel, sample) = (pixel.saturating_add(1), 0);
+            }
+            place
+        })
     }
 
     /// How many rays there are in a row.
@@ -100,8 +125,37 @@ impl Pencil {
     #[inline]
     #[must_use]
     pub fn ray(&self, column: u32, row: u32) -> Ray {
-        let [x, y] = self.first;
-        Ray::new(self.origin, self.screen.through([x.saturating_add(column), y.saturating_add(row)]))
+        let [x, y] = &self.places;
+        let at = |places: &[f32; Self::SIDE as usize], number: u32| places[(number % Self::SIDE) as usize];
+        Ray::new(self.origin, self.screen.through([at(x, column), at(y, row)]))
+    }
+
+    /// The ray of a bit, eight for a row.
+    #[inline]
+    pub(crate) fn numbered(&self, bit: u32) -> Ray {
+        self.ray(bit % Self::SIDE, bit / Self::SIDE)
+    }
+
+    /// Where they begin.
+    pub(crate) const fn eye(&self) -> Vec3 {
+        self.origin
+    }
+
+    /// The directions of four rays half a step around all others.
+    pub(crate) fn corners(&self) -> [Vec3; 4] {
+        let [right, bottom] = [self.columns, self.rows].map(|count| count as f32 - 0.5);
+        let through = |x: f32, y: f32| self.corner + self.right * x + self.down * y;
+        [through(-0.5, -0.5), through(right, -0.5), through(-0.5, bottom), through(right, bottom)]
+    }
+
+    /// The direction of the first ray, and what it changes by from a column and a row to the next.
+    pub(crate) const fn steps(&self) -> [Vec3; 3] {
+        [self.corner, self.right, self.down]
+    }
+
+    /// More than the magnitudes of all that any coordinate of a direction is summed from.
+    pub(crate) const fn size(&self) -> f32 {
+        self.size
     }
 
     /// All of the rays; none if they are to be looked at one by one.
@@ -219,7 +273,7 @@ mod tests {
     #[test]
     fn candidates_are_the_hits_and_hardly_more() {
         let screen = Screen { forward: Vec3::Z, up: Vec3::Y * 0.36, right: Vec3::NEG_X * 0.36, half: [120.0; 2] };
-        let pencil = Pencil::new(Vec3::ONE, screen, [96, 136], [8, 7]).unwrap();
+        let pencil = Pencil::new(Vec3::ONE, screen, [96, 136], [8, 7], 1).unwrap();
         let mut state = 1_u32;
         let mut random = |size: f32| {
             state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
@@ -248,7 +302,7 @@ mod tests {
     #[test]
     fn candidates_are_the_hits_where_products_underflow() {
         let screen = Screen { forward: Vec3::Z, up: Vec3::Y * 1.0e15, right: Vec3::NEG_X * 1.0e15, half: [4.0; 2] };
-        let pencil = Pencil::new(Vec3::ZERO, screen, [0, 0], [8, 8]).unwrap();
+        let pencil = Pencil::new(Vec3::ZERO, screen, [0, 0], [8, 8], 1).unwrap();
         let mut state = 1_u32;
         let mut random = |steps: u32| {
             state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
@@ -273,7 +327,8 @@ mod tests {
     #[test]
     fn pencils_have_some_rays_but_not_too_many() {
         let screen = Screen { forward: Vec3::Z, up: Vec3::Y, right: Vec3::X, half: [8.0; 2] };
-        let rays = |columns, rows| Pencil::new(Vec3::ZERO, screen, [0, 0], [columns, rows]).map(|pencil| pencil.all());
+        let rays =
+            |columns, rows| Pencil::new(Vec3::ZERO, screen, [0, 0], [columns, rows], 1).map(|pencil| pencil.all());
         assert_eq!(rays(8, 8), Some(u64::MAX));
         assert_eq!(rays(3, 2), Some(0x0707));
         assert_eq!(rays(1, 1), Some(1));

@@ -11,7 +11,7 @@ use crate::{
 ///
 /// Weghorst, Hooper and Greenberg, *Improved computational methods for ray tracing*, 1984.
 #[derive(Clone, Debug)]
-pub struct ItemBuffer([Hit; RAYS]);
+pub struct ItemBuffer(pub(super) [Hit; RAYS]);
 
 /// As many as a pencil has.
 const RAYS: usize = (Pencil::SIDE * Pencil::SIDE) as usize;
@@ -39,6 +39,24 @@ impl ItemBuffer {
     pub fn get(&self, column: u32, row: u32) -> Option<Hit> {
         let hit = *self.0.chunks(Pencil::SIDE as usize).nth(row as usize)?.get(column as usize)?;
         (hit.primitive != u32::MAX).then_some(hit)
+    }
+
+    /// Gives the ray in a column and a row this hit if it comes before its own: one with something else than was asked.
+    ///
+    /// ```
+    /// use hitscan::{Hit, query::ItemBuffer};
+    /// let mut hits = ItemBuffer::new();
+    /// hits.offer(3, 5, Hit { t: 2.0, primitive: 7 });
+    /// hits.offer(3, 5, Hit { t: 2.0, primitive: 8 });
+    /// assert_eq!(hits.get(3, 5), Some(Hit { t: 2.0, primitive: 7 }));
+    /// ```
+    pub fn offer(&mut self, column: u32, row: u32, hit: Hit) {
+        let row = self.0.chunks_mut(Pencil::SIDE as usize).nth(row as usize);
+        if let Some(own) = row.and_then(|row| row.get_mut(column as usize))
+            && hit.precedes(own)
+        {
+            *own = hit;
+        }
     }
 
     /// The parameter behind which nothing matters to any of these rays.
@@ -112,7 +130,7 @@ impl<A: Accelerator, P: Primitives> Scene<A, P> {
                     {
                         continue;
                     }
-                    let prepared = PreparedRay::here(&pencil.ray(number % Pencil::SIDE, number / Pencil::SIDE));
+                    let prepared = PreparedRay::here(&pencil.numbered(number));
                     let Some(ray) = prepared.as_ref() else { continue };
                     if let Some(hit) = self.intersect(index, ray, Span::new(start_of(ray), *best)) {
                         missing -= u32::from(best.primitive == u32::MAX);

@@ -3,6 +3,7 @@
 mod collector;
 mod hits;
 mod item_buffer;
+mod lattice_items;
 mod nearby;
 mod overlaps;
 mod paused;

@@ -97,10 +97,15 @@ impl Camera {
     /// The rays through the middles of a tile's pixels; `None` if they do not begin at one point, or are more than 8 x 8.
     #[must_use]
     pub fn pencil(&self, tile: &Tile, width: u32, height: u32) -> Option<Pencil> {
+        self.pencil_of(tile, width, height, 1)
+    }
+
+    /// The same of `samples` x `samples` rays a pixel.
+    pub(super) fn pencil_of(&self, tile: &Tile, width: u32, height: u32, samples: u32) -> Option<Pencil> {
         if self.parallel {
             return None;
         }
-        Pencil::new(self.eye, self.screen(width, height), [tile.x, tile.y], [tile.width, tile.height])
+        Pencil::new(self.eye, self.screen(width, height), [tile.x, tile.y], [tile.width, tile.height], samples)
     }
 
     /// All rays through the points of a tile of a picture; `None` if they are to be looked at one by one.

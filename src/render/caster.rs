@@ -96,12 +96,17 @@ impl<A: LatticeAccelerator, P: LatticeTriangles> Caster for LatticeScene<A, P> {
     ///
     /// What a ray hits lies within its rounding of the line that was meant, so that one beside it, of the wider bundle, passes
     /// through. Of origins so far away that the width is lost in them, exits are later by more than that.
+    #[inline(never)] // The wider bundle is not kept.
     fn enter(&self, bundle: &Bundle) -> Entries {
         self.accelerator().enter(&bundle.padded(rounding(self)))
     }
 
     fn closest_hit_from(&self, entries: &Entries, ray: &Ray) -> Option<Hit> {
         if entries.is_empty() { None } else { Self::closest_hit(self, ray) }
+    }
+
+    fn closest_hits(&self, pencil: &Pencil, hits: &mut ItemBuffer) -> bool {
+        Self::closest_hits(self, pencil, hits)
     }
 
     fn any_hit(&self, ray: &Ray, _depth: u32) -> bool {

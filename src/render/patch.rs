@@ -48,7 +48,7 @@ impl<'a, S: Caster + ?Sized> Patch<'a, S> {
     #[must_use]
     pub fn pixel(&self, x: u32, y: u32) -> Vec3 {
         let first = self.entries.as_ref().map_or(First::Unknown, First::From);
-        self.renderer.pixel_from(Some(self), first, x, y)
+        self.renderer.pixel_from(Some(self), |_, _| first, x, y)
     }
 
     /// Whether something keeps the light of this number from where a shadow ray begins.

@@ -5,7 +5,7 @@ use glam::Vec3;
 use super::{Camera, Caster, Color, Light, Materials, Patch, Progressive, Terms, Tile, Tiles, shade::mirror};
 use crate::{
     accel::Entries,
-    geometry::{Aabb, Bundle, Pencil, Ray},
+    geometry::{Aabb, Bundle, Pencil, Ray, place},
     primitives::{Hit, unit},
     query::ItemBuffer,
 };
@@ -190,14 +190,28 @@ impl<'a, S: Caster + ?Sized> Renderer<'a, S> {
             return Err(TooShort { needed, available });
         }
         let mut hits = ItemBuffer::new();
-        for part in tile.parts(PATCH, PATCH) {
-            let at_once = self.pencil(&part).is_some_and(|pencil| self.scene.closest_hits(&pencil, &mut hits));
+        // After parts whose hits are not found at once, fewer and fewer are tried so.
+        let (mut pause, mut left) = (0, 0);
+        let side = self.part();
+        for part in tile.parts(side, side) {
+            // Borrowed: moved, a pencil takes 120 bytes of stack more.
+            let pencil = if left == 0 { self.pencil(&part) } else { None };
+            let at_once = pencil.as_ref().is_some_and(|pencil| self.scene.closest_hits(pencil, &mut hits));
+            if at_once {
+                pause = 0;
+            } else if left > 0 {
+                left -= 1;
+            } else {
+                pause = (2 * pause + 1) % 16;
+                left = pause;
+            }
             let patch = if at_once { Patch::begun(*self) } else { self.patch(part) };
             for (x, y) in part.pixels() {
                 let index = (y - tile.y) as usize * tile.width as usize + (x - tile.x) as usize;
                 if let Some(pixel) = pixels.get_mut(index) {
                     let light = if at_once {
-                        self.pixel_from(Some(&patch), First::Known(hits.get(x - part.x, y - part.y)), x, y)
+                        let [column, row] = [x - part.x, y - part.y].map(|pixels| pixels * self.samples);
+                        self.pixel_from(Some(&patch), |i, j| First::Known(hits.get(column + i, row + j)), x, y)
                     } else {
                         patch.pixel(x, y)
                     };
@@ -238,9 +252,17 @@ impl<'a, S: Caster + ?Sized> Renderer<'a, S> {
         self.bundle(tile).is_none_or(|bundle| bundle.entry(bounds).is_some())
     }
 
-    /// The rays of a tile of at most 8 x 8 pixels; none if there is more than one a pixel.
+    /// Pixels along a side of what has as many rays as a pencil, if one has not more.
+    fn part(&self) -> u32 {
+        match PATCH.checked_div(self.samples) {
+            Some(side) if side > 0 => side,
+            _ => PATCH,
+        }
+    }
+
+    /// The rays of a tile; none if they are more than 8 x 8.
     fn pencil(&self, tile: &Tile) -> Option<Pencil> {
-        if self.samples == 1 { self.camera.pencil(tile, self.width, self.height) } else { None }
+        self.camera.pencil_of(tile, self.width, self.height, self.samples)
     }
 
     /// All rays of a tile.
@@ -251,18 +273,23 @@ impl<'a, S: Caster + ?Sized> Renderer<'a, S> {
     /// The linear colour of a pixel, the mean of its samples.
     #[must_use]
     pub fn pixel(&self, x: u32, y: u32) -> Vec3 {
-        self.pixel_from(None, First::Unknown, x, y)
+        self.pixel_from(None, |_, _| First::Unknown, x, y)
     }
 
-    /// The colour of a pixel, of a patch or by itself; what is known of the first hit is that of its only ray.
-    pub(super) fn pixel_from(&self, patch: Option<&Patch<'_, S>>, first: First<'_>, x: u32, y: u32) -> Vec3 {
+    /// The colour of a pixel, of a patch or by itself, with what is known of the first hit of each of its rays.
+    pub(super) fn pixel_from<'p>(
+        &self,
+        patch: Option<&Patch<'_, S>>,
+        first: impl Fn(u32, u32) -> First<'p>,
+        x: u32,
+        y: u32,
+    ) -> Vec3 {
         let step = 1.0 / self.samples as f32;
         let mut sum = Vec3::ZERO;
         for j in 0..self.samples {
             for i in 0..self.samples {
-                let (dx, dy) = ((i as f32 + 0.5) * step, (j as f32 + 0.5) * step);
-                let ray = self.camera.ray(x as f32 + dx, y as f32 + dy, self.width, self.height);
-                sum += self.light_along(patch, first, ray);
+                let ray = self.camera.ray(place(x, i, step), place(y, j, step), self.width, self.height);
+                sum += self.light_along(patch, first(i, j), ray);
             }
         }
         sum * (step * step)

@@ -6,8 +6,9 @@ use std::{
 use hitscan::{
     Hit, Ray,
     accel::Entries,
-    geometry::{Aabb, Bundle},
+    geometry::{Aabb, Bundle, Pencil},
     primitives::Surface,
+    query::ItemBuffer,
     render::{Caster, Material},
 };
 
@@ -34,6 +35,9 @@ struct Counter {
     queries: AtomicU64,
     sampled: AtomicU64,
     nanoseconds: AtomicU64,
+    /// Queries for many rays at once, each of which is timed.
+    pencils: AtomicU64,
+    pencil_nanoseconds: AtomicU64,
 }
 
 /// What was counted, over all threads.
@@ -78,30 +82,41 @@ impl<'a, S: ?Sized> Counted<'a, S> {
                 tally.closest[depth] += counter.closest[depth].load(Relaxed);
                 tally.shadow[depth] += counter.any[depth].load(Relaxed);
             }
-            let [queries, sampled, nanoseconds] =
-                [&counter.queries, &counter.sampled, &counter.nanoseconds].map(|cell| cell.load(Relaxed) as f64);
+            let Counter { queries, sampled, nanoseconds, pencils, pencil_nanoseconds, .. } = counter;
+            let [queries, sampled, nanoseconds, pencils, pencil_nanoseconds] =
+                [queries, sampled, nanoseconds, pencils, pencil_nanoseconds].map(|cell| cell.load(Relaxed) as f64);
             if sampled > 0.0 {
                 let mean = (nanoseconds / sampled - clock).max(0.0);
                 tally.seconds += mean * queries * 1.0e-9;
             }
+            tally.seconds += (pencil_nanoseconds - pencils * clock).max(0.0) * 1.0e-9;
         }
         tally
     }
 
+    /// The counter of this thread.
+    fn counter(&self) -> &Counter {
+        &self.counters[rayon::current_thread_index().unwrap_or(0) % self.counters.len()]
+    }
+
     fn counted<T>(&self, kind: impl Fn(&Counter) -> &[AtomicU64; DEPTHS], depth: u32, query: impl FnOnce() -> T) -> T {
-        let thread = rayon::current_thread_index().unwrap_or(0) % self.counters.len();
-        let counter = &self.counters[thread];
+        let counter = self.counter();
         add(&kind(counter)[(depth as usize).min(DEPTHS - 1)], 1);
         if !add(&counter.queries, 1).is_multiple_of(SAMPLED) {
             return query();
         }
-        let begun = Instant::now();
-        let answer = query();
-        let nanoseconds = begun.elapsed().as_nanos() as u64;
-        add(&counter.sampled, 1);
-        add(&counter.nanoseconds, nanoseconds);
-        answer
+        timed(&counter.sampled, &counter.nanoseconds, query)
     }
+}
+
+/// A query, one more whose time is taken.
+fn timed<T>(count: &AtomicU64, nanoseconds: &AtomicU64, query: impl FnOnce() -> T) -> T {
+    let begun = Instant::now();
+    let answer = query();
+    let elapsed = begun.elapsed().as_nanos() as u64;
+    add(count, 1);
+    add(nanoseconds, elapsed);
+    answer
 }
 
 /// Adds to a cell that only this thread writes, without the price of an atomic addition; what was there before.
@@ -132,6 +147,17 @@ impl<S: Caster + ?Sized> Caster for Counted<'_, S> {
         self.counted(|counter| &counter.closest, 0, || self.scene.closest_hit_from(entries, ray))
     }
 
+    /// Counted are rays that are answered; time passes in any case.
+    fn closest_hits(&self, pencil: &Pencil, hits: &mut ItemBuffer) -> bool {
+        let counter = self.counter();
+        let query = || self.scene.closest_hits(pencil, hits);
+        let is_done = timed(&counter.pencils, &counter.pencil_nanoseconds, query);
+        if is_done {
+            add(&counter.closest[0], u64::from(pencil.columns() * pencil.rows()));
+        }
+        is_done
+    }
+
     fn any_hit(&self, ray: &Ray, depth: u32) -> bool {
         self.counted(|counter| &counter.any, depth, || self.scene.any_hit(ray, depth))
     }
@@ -155,7 +181,10 @@ impl<S: Caster + ?Sized> Caster for Counted<'_, S> {
 
 #[cfg(test)]
 mod tests {
-    use hitscan::glam::Vec3;
+    use hitscan::{
+        glam::Vec3,
+        render::{Camera, Renderer, Tile},
+    };
 
     use super::*;
 
@@ -164,6 +193,11 @@ mod tests {
     impl Caster for Nothing {
         fn closest_hit(&self, _: &Ray, _: u32) -> Option<Hit> {
             None
+        }
+        /// Tiles in the left half of a picture.
+        fn closest_hits(&self, pencil: &Pencil, hits: &mut ItemBuffer) -> bool {
+            *hits = ItemBuffer::new();
+            pencil.ray(0, 0).direction.x < 0.0
         }
         fn any_hit(&self, _: &Ray, _: u32) -> bool {
             false
@@ -192,5 +226,20 @@ mod tests {
         let tally = counted.tally();
         assert_eq!(tally.closest[..4], [202, 200, 200, 0]);
         assert_eq!((tally.shadow[DEPTHS - 1], tally.rays()), (4, 606));
+    }
+
+    /// Some are asked for at once, some by themselves: it is the same number.
+    #[test]
+    fn rays_of_tiles_are_counted_once() {
+        let camera = Camera::pinhole(Vec3::ZERO, Vec3::NEG_Z, Vec3::Y, 1.0);
+        for samples in [1, 2, 3] {
+            let counted = Counted::new(&Nothing, 1);
+            let renderer = Renderer::new(&counted, camera, 36, 20).with_samples(samples);
+            renderer.fill(Tile { x: 0, y: 0, width: 36, height: 20 }, &mut [Vec3::ZERO; 36 * 20]).unwrap();
+            let tally = counted.tally();
+            assert_eq!(tally.rays(), u64::from(36 * 20 * samples * samples));
+            let at_once = counted.counters[0].pencils.load(Relaxed);
+            assert!(at_once > 0 && counted.counters[0].queries.load(Relaxed) < tally.rays());
+        }
     }
 }

@@ -1,9 +1,10 @@
 use hitscan::{
     Hit, List, PreparedRay, Primitives, Ray, Scene, Span,
     accel::Entries,
-    geometry::{Aabb, Bundle},
+    geometry::{Aabb, Bundle, Pencil},
     glam::Vec3,
     primitives::Surface,
+    query::ItemBuffer,
     render::{Caster, Material},
 };
 
@@ -81,9 +82,14 @@ impl<'a, S: Caster + ?Sized> Grounded<'a, S> {
 }
 
 impl<S: ?Sized> Grounded<'_, S> {
+    /// The hit of the ray with the plate.
+    fn below(&self, ray: &Ray) -> Option<Hit> {
+        self.plate.closest_hit(ray).map(|hit| Hit { primitive: self.number, ..hit })
+    }
+
     /// The first hit of the ray with the plate or with the scene, which is asked up to the plate and whose number is less.
     fn first(&self, ray: &Ray, of_scene: impl FnOnce(&Ray) -> Option<Hit>) -> Option<Hit> {
-        let below = self.plate.closest_hit(ray).map(|hit| Hit { primitive: self.number, ..hit });
+        let below = self.below(ray);
         let nearer = below.map_or(*ray, |hit| ray.up_to(hit.t));
         of_scene(&nearer).or(below)
     }
@@ -101,6 +107,19 @@ impl<S: Caster + ?Sized> Caster for Grounded<'_, S> {
 
     fn closest_hit_from(&self, entries: &Entries, ray: &Ray) -> Option<Hit> {
         self.first(ray, |ray| self.scene.closest_hit_from(entries, ray))
+    }
+
+    fn closest_hits(&self, pencil: &Pencil, hits: &mut ItemBuffer) -> bool {
+        let is_done = self.scene.closest_hits(pencil, hits);
+        if is_done {
+            let rays = (0..pencil.rows()).flat_map(|row| (0..pencil.columns()).map(move |column| (column, row)));
+            for (column, row) in rays {
+                if let Some(below) = self.below(&pencil.ray(column, row)) {
+                    hits.offer(column, row, below);
+                }
+            }
+        }
+        is_done
     }
 
     fn any_hit(&self, ray: &Ray, depth: u32) -> bool {
@@ -131,8 +150,10 @@ impl<S: Caster + ?Sized> Caster for Grounded<'_, S> {
 #[cfg(test)]
 mod tests {
     use hitscan::{
-        Mesh,
-        render::{Camera, Renderer},
+        KdTree, Mesh,
+        accel::Plan,
+        bake,
+        render::{Camera, Renderer, Tile},
     };
 
     use super::*;
@@ -154,20 +175,30 @@ mod tests {
         assert!(grounded.closest_hit(&down(1000.0), 0).is_none());
     }
 
-    /// A picture by tiles, through both decorators, is the picture pixel by pixel, and tiles that see nothing of the scene
-    /// are told.
+    /// A picture by tiles, at once or begun together, through both decorators, is the picture pixel by pixel, and tiles that
+    /// see nothing of the scene are told.
     #[test]
     fn tiles_enter_what_stands_on_the_plate() {
         let vertices = [Vec3::new(-1.0, 1.0, -1.0), Vec3::new(3.0, 1.0, -1.0), Vec3::new(-1.0, 4.0, 3.0)];
         let mesh = Mesh::new(&vertices, &[[0_u16, 1, 2]]).unwrap();
-        let scene = Scene::new(List::new(&mesh).unwrap(), &mesh).unwrap();
-        let counted = super::super::Counted::new(&scene, 1);
+        let list = Scene::new(List::new(&mesh).unwrap(), &mesh).unwrap();
+        let words = bake::build(&mesh, &Plan::KdTree(Default::default())).unwrap();
+        let tree = Scene::new(KdTree::open(&words).unwrap(), &mesh).unwrap();
+        for (scene, at_once) in [(&list as &(dyn Caster + Sync), false), (&tree, true)] {
+            tiles_of(scene, at_once);
+        }
+    }
+
+    fn tiles_of(scene: &(dyn Caster + Sync), at_once: bool) {
+        let counted = super::super::Counted::new(scene, 1);
         let grounded = Grounded::new(&counted, 1, 1).unwrap();
         let camera = Camera::pinhole(Vec3::new(-4.0, 6.0, -9.0), Vec3::ONE, Vec3::Y, 0.9);
         let renderer = Renderer::new(&grounded, camera, 96, 96);
         let mut empty = 0;
         for tile in renderer.tiles(32, 16) {
             empty += u32::from(grounded.enter(&camera.bundle(&tile, 96, 96).unwrap()).is_empty());
+            let pencil = camera.pencil(&Tile { width: 8, height: 8, ..tile }, 96, 96).unwrap();
+            assert_eq!(grounded.closest_hits(&pencil, &mut ItemBuffer::new()), at_once);
             let mut filled = vec![Vec3::ZERO; tile.area()];
             renderer.fill(tile, &mut filled).unwrap();
             assert!(filled.iter().zip(tile.pixels()).all(|(light, (x, y))| *light == renderer.pixel(x, y)));

@@ -7,7 +7,7 @@ use hitscan::{
     accel::{Bounded, Hierarchy, LatticeAccelerator, Structure},
     asset::Asset,
     error::BuildError,
-    geometry::{Bundle, Transform},
+    geometry::{Bundle, LatticePath, Transform},
     primitives::{
         Indices, LatticeTriangles, Mapped, Normals, Order, Proximity, Renumbering, Reordered, Sides, Smooth, Soup,
         Spheres, Surface, TexCoords,
@@ -102,10 +102,16 @@ fn whole<A: LatticeAccelerator>(structure: Result<A, BuildError>, mesh: impl Lat
     let Ok(scene) = LatticeScene::new(structure, mesh) else { return };
     render::pixel(&scene);
     black_box((scene.closest_hit(&ray()), scene.any_hit(&ray()), scene.accelerator().primitives()));
+    let camera = Camera::pinhole(vector(), vector(), vector(), float());
+    if let Some(pencil) = camera.pencil(&Tile { x: word(), y: word(), width: 8, height: 8 }, word(), word()) {
+        let mut items = ItemBuffer::new();
+        black_box((scene.closest_hits(&pencil, &mut items), items.get(word(), word())));
+    }
     let rays = scene.space().rays(vector(), vector(), vector(), word());
     black_box(rays.size_hint());
     for ray in rays.flatten() {
         black_box((scene.closest_hit_along(&ray), scene.any_hit_along(&ray)));
+        black_box((ray.inside(), ray.descending(), ray.entry(word(), word()), ray.exit(word(), word())));
     }
 }
 
@@ -173,6 +179,7 @@ fn cast<A: Accelerator, P: Primitives, E>(scene: Result<Scene<A, P>, E>) {
     let camera = Camera::pinhole(vector(), vector(), vector(), float());
     if let Some(pencil) = camera.pencil(&Tile { x: word(), y: word(), width: 8, height: 8 }, word(), word()) {
         let mut items = ItemBuffer::new();
+        items.offer(word(), word(), hit);
         black_box((
             scene.closest_hits(&pencil, &mut items),
             items.get(word(), word()),

@@ -7,7 +7,7 @@ use crate::{
         lattice_segment::{LatticeSegment, LatticeWaiting},
         leaf::References,
     },
-    geometry::LatticeRay,
+    geometry::LatticePath,
 };
 
 /// The walk through a [`DualSplit`] in whole numbers: that of
@@ -26,7 +26,7 @@ impl<'a, const HEIGHT: usize> LatticeAccelerator for DualSplit<'a, HEIGHT> {
     type Walk = DualSplitWalk<'a, HEIGHT>;
 
     #[inline(always)]
-    fn walk(&self, _ray: &LatticeRay) -> DualSplitWalk<'a, HEIGHT> {
+    fn walk(&self) -> DualSplitWalk<'a, HEIGHT> {
         DualSplitWalk {
             nodes: self.nodes,
             references: self.references,
@@ -40,10 +40,10 @@ impl<'a, const HEIGHT: usize> LatticeWalk for DualSplitWalk<'a, HEIGHT> {
     type Leaf = Leaf<'a>;
 
     #[inline(never)]
-    fn next_leaf(&mut self, ray: &LatticeRay, depth: i32) -> Option<Leaf<'a>> {
+    fn next_leaf<P: LatticePath>(&mut self, path: &P, depth: i32) -> Option<Leaf<'a>> {
         let nodes = self.nodes;
         let has_begun = mem::replace(&mut self.has_begun, true);
-        let mut cell = if has_begun { self.waiting.pop(depth)? } else { LatticeSegment::whole(ray) };
+        let mut cell = if has_begun { self.waiting.pop(depth)? } else { LatticeSegment::whole(path) };
         loop {
             let head = Head::from_word(*nodes.get(cell.node as usize)?);
             let axis = head.axis_or_leaf();
@@ -55,11 +55,11 @@ impl<'a, const HEIGHT: usize> LatticeWalk for DualSplitWalk<'a, HEIGHT> {
             if head.is_carve() {
                 cell.node = child;
                 for (head, plane) in [(head, planes & 0xffff), (head.turned(), planes >> 16)] {
-                    let view = ray.views.get(head.axis_or_leaf() as usize)?;
-                    if head.is_entered(ray.descending) {
-                        cell.enter = view.entry(plane).max(cell.enter);
+                    let axis = head.axis_or_leaf();
+                    if head.is_entered(path.descending()) {
+                        cell.enter = path.entry(axis, plane)?.max(cell.enter);
                     } else {
-                        cell.exit = view.exit(plane).min(cell.exit);
+                        cell.exit = path.exit(axis, plane)?.min(cell.exit);
                     }
                     if cell.enter > cell.exit {
                         cell = self.waiting.pop(depth)?;
@@ -69,16 +69,15 @@ impl<'a, const HEIGHT: usize> LatticeWalk for DualSplitWalk<'a, HEIGHT> {
                 continue;
             }
             // The near child ends at the plane in the lower half, the far one begins at the upper.
-            let descended = head.is_descended(ray.descending);
+            let descended = head.is_descended(path.descending());
             let (planes, near, far) =
                 if descended { (planes.rotate_left(16), head.right(), child) } else { (planes, child, head.right()) };
-            let view = ray.views.get(axis as usize)?;
-            let exit = view.exit(planes & 0xffff);
+            let exit = path.exit(axis, planes & 0xffff)?;
             if exit < cell.enter {
                 cell.node = far;
                 continue;
             }
-            let entry = view.entry(planes >> 16);
+            let entry = path.entry(axis, planes >> 16)?;
             if entry <= cell.exit {
                 self.waiting.push(far, entry.max(cell.enter), cell.exit);
             }

@@ -26,14 +26,33 @@
 //! ([`LatticeRay`] has the sum). To the exact depth at which the ray crosses such a plane, a ray's view of an axis adds or takes off what
 //! it may be wrong by, so that no box that P lies in is entered behind D or left before it, and nothing is pruned that ends
 //! a search at D. Nested boxes only take the greatest entry and the least exit, and depths of hits are compared as they are.
+//!
+//! # The rays of a tile
+//!
+//! Rays from one point, of one major axis, are walked at once: between the rays through the outer corners of the tile all
+//! others lie, farther from them than directions are rounded by, and the depth at which a plane across an axis is passed only
+//! rises or only falls from corner to corner. So the steepest line's entries and the flattest one's exits bound those of
+//! all; what the roundings of a second ray add is within a slack of eight more steps. Where rays go both ways along an axis, those that
+//! rise bound the entries, and what lies below the lowest of all at the last plane is never met.
+//!
+//! A triangle's corners are projected to the tile. What a ray hits lies within a few steps of its line, as it is seen from the eye
+//! a fraction of a pixel; that, and what else is rounded, is a number per triangle. A ray farther outside of the projected
+//! triangle than this hits nothing; the others take the test.
 
 mod fixed;
+mod path;
+mod pencil;
+mod projection;
 mod ray;
 mod rays;
+mod sight;
 mod space;
 mod triangle;
 
+pub use path::LatticePath;
+pub(crate) use pencil::LatticePencil;
 pub use ray::LatticeRay;
 pub use rays::LatticeRays;
+pub(crate) use sight::Sight;
 pub use space::LatticeSpace;
 pub(crate) use triangle::Depth;

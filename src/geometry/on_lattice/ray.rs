@@ -1,3 +1,4 @@
+use super::sight::{Line, Sight};
 use crate::geometry::Axis;
 
 /// The number of the last plane.
@@ -22,12 +23,8 @@ pub struct LatticeRay {
     pub(crate) views: [View; 3],
     /// A bit per axis along which the ray meets higher numbers first, repeated every four bits.
     pub(crate) descending: u32,
-    /// The axes in cyclic order, the major one last.
-    pub(super) axes: [Axis; 3],
-    /// The planes of the first two axes that the ray crosses per plane of the major one, in 2^-14.
-    pub(super) slope: [i32; 2],
-    /// Where it crosses them at the major axis's plane 0, in 2^-14.
-    pub(super) anchor: [i32; 2],
+    /// How it sees triangles.
+    pub(crate) sight: Sight,
     /// The depths between which hits count, both included, in 2^-8 planes.
     pub(crate) depths: (i32, i32),
     /// The whole depths between which the ray is in the lattice.
@@ -54,20 +51,13 @@ pub(crate) struct View {
 }
 
 impl View {
-    /// The depths at which the ray enters what is behind a plane at the earliest and leaves what is before it at the latest.
-    #[inline(always)]
-    pub(crate) const fn depths(&self, plane: u32) -> (i32, i32) {
-        let depth = (plane as i32).wrapping_mul(self.factor);
-        (self.cut(depth.wrapping_add(self.entry)), self.cut(depth.wrapping_add(self.exit)))
-    }
-
-    /// The first of [`depths`](Self::depths).
+    /// The depth at which the ray enters what is behind a plane at the earliest.
     #[inline(always)]
     pub(crate) const fn entry(&self, plane: u32) -> i32 {
         self.cut((plane as i32).wrapping_mul(self.factor).wrapping_add(self.entry))
     }
 
-    /// The second of [`depths`](Self::depths).
+    /// The depth at which it leaves what is before the plane at the latest.
     #[inline(always)]
     pub(crate) const fn exit(&self, plane: u32) -> i32 {
         self.cut((plane as i32).wrapping_mul(self.factor).wrapping_add(self.exit))
@@ -78,14 +68,28 @@ impl View {
         depth >> (self.shift & 31)
     }
 
+    /// The earliest entries where planes may be off by so many more steps.
+    pub(super) const fn entries(&self, steps: i32) -> Passing {
+        Passing {
+            constant: self.entry - steps * self.factor.abs(),
+            factor: self.factor as i16,
+            shift: self.shift as u8,
+        }
+    }
+
+    /// And the latest exits.
+    pub(super) const fn exits(&self, steps: i32) -> Passing {
+        Passing { constant: self.exit + steps * self.factor.abs(), factor: self.factor as i16, shift: self.shift as u8 }
+    }
+
     /// The planes of the major axis itself.
-    const fn along(descends: bool) -> Self {
+    pub(super) const fn along(descends: bool) -> Self {
         let (factor, first) = if descends { (-1, LAST) } else { (1, 0) };
         Self { factor, entry: first - ALONG, exit: first + ALONG, shift: 0 }
     }
 
     /// The planes of an axis that the ray crosses at `middle` with a slope, both in 2^-14.
-    fn across(middle: i32, slope: i32, descends: bool) -> Self {
+    pub(super) fn across(middle: i32, slope: i32, descends: bool) -> Self {
         // As flat as a reciprocal of 13 bits can tell: within the lattice that is 4 planes off at most.
         let steps = slope.unsigned_abs().max(2);
         let log = steps.ilog2();
@@ -101,18 +105,33 @@ impl View {
     }
 
     /// Whether the ray meets higher numbers first.
-    const fn descends(&self) -> bool {
+    pub(super) const fn descends(&self) -> bool {
         self.factor < 0
     }
 }
 
-/// A line through a lattice.
-pub(super) struct Line {
-    pub(super) major: Axis,
-    /// Whether the ray goes towards lower numbers along the major axis.
-    pub(super) descends: bool,
-    /// Along the two axes after it: where the line crosses the middle plane, and its slope, in 2^-14.
-    pub(super) crossings: [(i32, i32); 2],
+/// One bound of a [`View`], in 8 bytes.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Passing {
+    constant: i32,
+    factor: i16,
+    shift: u8,
+}
+
+impl Passing {
+    /// The depth at a plane.
+    #[inline(always)]
+    pub(super) const fn depth(&self, plane: u32) -> i32 {
+        (plane as i32).wrapping_mul(self.factor as i32).wrapping_add(self.constant) >> (self.shift & 31)
+    }
+
+    /// The latest exits of rays that never leave what is before a plane, above the lowest that any of them is at.
+    pub(super) const fn above(lowest: i32) -> Self {
+        // A plane lower, and it is never entered.
+        const SLACK: i32 = 4 * ACROSS;
+        let lowest = if lowest < -SLACK { -SLACK } else { lowest };
+        Self { constant: (SLACK - lowest) << 13, factor: 1 << 13, shift: 0 }
+    }
 }
 
 /// The hits that count.
@@ -138,9 +157,9 @@ impl LatticeRay {
         along: (f32, f32),
         mask: u32,
     ) -> Option<Self> {
+        let sight = Sight::new(line)?;
         let Line { major, descends, crossings: [(x, x_slope), (y, y_slope)] } = *line;
         let Interval { depths, limits } = *interval;
-        let anchor = [anchor(x, x_slope)?, anchor(y, y_slope)?];
         let (first, second) = (View::across(x, x_slope, descends), View::across(y, y_slope, descends));
         let mut inside = ((depths.0 >> 8).max(0), (depths.1 >> 8).min(LAST));
         for view in [&first, &second] {
@@ -163,9 +182,7 @@ impl LatticeRay {
         Some(Self {
             views,
             descending: bits * 0x1111_1111,
-            axes: [major.next(), major.next().next(), major],
-            slope: [x_slope, y_slope],
-            anchor,
+            sight,
             depths,
             inside: (inside.0 as u16, inside.1 as u16),
             mask,
@@ -177,27 +194,14 @@ impl LatticeRay {
 
     /// The ray's parameter at a depth in 2^-8.
     pub(crate) fn parameter(&self, depth: i32) -> f32 {
-        let [.., major] = self.axes;
-        let plane = if self.views[major as usize].descends() { (LAST << 8) - depth } else { depth };
-        let (origin, direction) = self.line;
-        let (first, step) = self.planes;
-        let t = (first + plane as f32 * (step * (1.0 / 256.0)) - origin) / direction;
+        let t = parameter(self.sight.plane(depth), self.planes, self.line);
         let t = if t < self.limits.0 { self.limits.0 } else { t };
         if t > self.limits.1 { self.limits.1 } else { t }
     }
 }
 
-/// Where a line crosses plane 0 that crosses the middle plane at `middle`, if it crosses the lattice.
-///
-/// The distance of any vertex from the line is then below 2^17, as a number of 2^-14 it fits 32 bits.
-fn anchor(middle: i32, slope: i32) -> Option<i32> {
-    const END: i32 = LAST << LatticeRay::FRACTION;
-    /// Half of the lattice.
-    const HALF: i32 = MIDDLE << LatticeRay::FRACTION;
-    if !(-HALF..=END + HALF).contains(&middle) {
-        return None;
-    }
-    let (first, last) = (middle - slope * MIDDLE, middle + slope * (LAST - MIDDLE));
-    let (least, most) = if slope < 0 { (last, first) } else { (first, last) };
-    (least <= END && most >= 0).then_some(first)
+/// The parameter at which a line, of which origin and direction are given, is at a plane in 2^-8 of its major axis.
+#[inline(always)]
+pub(super) fn parameter(plane: i32, (first, step): (f32, f32), (origin, direction): (f32, f32)) -> f32 {
+    (first + plane as f32 * (step * (1.0 / 256.0)) - origin) / direction
 }

@@ -3,7 +3,8 @@ use glam::Vec3;
 use super::{
     LatticeRay, LatticeRays,
     fixed::{Scaled, cut, high, reciprocal, shifted},
-    ray::{Interval, LAST, Line, MIDDLE},
+    ray::{Interval, LAST, MIDDLE},
+    sight::Line,
 };
 use crate::geometry::{Aabb, Axis, Lattice, Ray, in_range};
 
@@ -119,6 +120,28 @@ impl LatticeSpace {
         }
     }
 
+    /// A point where rays begin; `None` if it is not valid.
+    pub(super) fn from(&self, point: Vec3) -> Option<Planes> {
+        in_range(point).then(|| self.start(point))
+    }
+
+    /// The line of a ray from there; `None` if it is not valid.
+    #[inline(never)]
+    pub(super) fn line(&self, start: &Planes, direction: Vec3) -> Option<Line> {
+        if in_range(direction) { line(start, self.speed(direction).along) } else { None }
+    }
+
+    /// A vector's lengths of single steps.
+    pub(super) fn in_steps(&self, v: Vec3) -> Vec3 {
+        let [x, y, z] = &self.axes;
+        v * Vec3::new(x.step, y.step, z.step)
+    }
+
+    /// The coordinate of an axis's plane 0, and the distance of its planes.
+    pub(super) fn planes_of(&self, axis: Axis) -> (f32, f32) {
+        self.axes.get(axis as usize).map_or((0.0, 0.0), |scale| (scale.first, scale.step))
+    }
+
     /// From the middle of the lattice to a point.
     fn start(&self, point: Vec3) -> Planes {
         self.planes(|axis, scale| Scaled::new(axis.of(point) - scale.middle))
@@ -187,6 +210,14 @@ fn line(start: &Planes, speed: [i32; 3]) -> Option<Line> {
     Some(Line { major, descends, crossings })
 }
 
+impl Planes {
+    /// The number of 2^-`bits` planes along an axis.
+    pub(super) fn whole(&self, axis: Axis, bits: u32) -> i32 {
+        let along = self.along.get(axis as usize).copied().unwrap_or(0);
+        shifted(along, self.unit.saturating_add(bits as i32))
+    }
+}
+
 impl Line {
     /// The depth, in 2^-8, of a number of 2^-8 planes from the middle one; one beyond the lattice at most.
     fn depth(&self, from_middle: i32) -> i32 {
@@ -195,7 +226,7 @@ impl Line {
     }
 
     /// The depth of a point.
-    fn depth_of(&self, point: &Planes) -> i32 {
+    pub(super) fn depth_of(&self, point: &Planes) -> i32 {
         self.depth(shifted(point.along[self.major as usize], point.unit + 8))
     }
 }

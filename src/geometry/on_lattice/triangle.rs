@@ -1,4 +1,4 @@
-use super::{LatticeRay, ray::LAST};
+use super::{LatticeRay, sight::Sight};
 use crate::geometry::Axis;
 
 /// How deep a ray hits a triangle.
@@ -11,7 +11,7 @@ pub(crate) struct Depth {
 }
 
 /// The corners of a triangle, by the numbers of their planes.
-type Corners<'t> = [&'t [u16; 3]; 3];
+pub(crate) type Corners<'t> = [&'t [u16; 3]; 3];
 
 /// Edge functions that agree, which make a hit: each cut to as many bits as leave 16 to their sum.
 #[derive(Clone, Copy)]
@@ -52,7 +52,7 @@ impl Weights {
     }
 }
 
-impl LatticeRay {
+impl Sight {
     /// Where the line of the ray crosses a triangle, borders included.
     #[inline(always)]
     pub(crate) fn crossing(&self, corners: Corners<'_>) -> Option<Depth> {
@@ -67,7 +67,7 @@ impl LatticeRay {
         // No depth lies outside of those of the corners: mostly that is enough to know.
         let [.., major] = self.axes;
         let certain = corners.into_iter().all(|corner| {
-            let depth = self.oriented(i32::from(corner[major as usize]) << 8);
+            let depth = self.plane(i32::from(corner[major as usize]) << 8);
             from <= depth && depth <= until
         });
         let within = || {
@@ -77,18 +77,10 @@ impl LatticeRay {
         (certain || within()).then(|| self.is_front(&weights))
     }
 
-    /// The depth of a plane, both in 2^-8.
-    #[inline(always)]
-    fn oriented(&self, plane: i32) -> i32 {
-        let [.., major] = self.axes;
-        if self.descending >> (major as u32) & 1 != 0 { (LAST << 8) - plane } else { plane }
-    }
-
     /// Whether the ray comes from the front.
     #[inline(always)]
     const fn is_front(&self, weights: &Weights) -> bool {
-        let [.., major] = self.axes;
-        weights.counter_clockwise != (self.descending >> (major as u32) & 1 != 0)
+        weights.counter_clockwise != self.descends
     }
 
     /// The edge functions if they make a hit.
@@ -137,7 +129,7 @@ impl LatticeRay {
         // Below 2^32: the weights sum up to less than 2^16.
         let sum = u * (a - least) + v * (b - least) + w * (c - least);
         let (whole, rest) = (sum / area, sum % area);
-        self.oriented((((least + whole) << 8) + (rest << 8) / area) as i32)
+        self.plane((((least + whole) << 8) + (rest << 8) / area) as i32)
     }
 }
 

@@ -8,7 +8,7 @@ use crate::{
         lattice_segment::{LatticeSegment, LatticeWaiting},
         leaf::References,
     },
-    geometry::LatticeRay,
+    geometry::LatticePath,
 };
 
 /// The walk through a [`CompactKdTree`] in whole numbers.
@@ -29,7 +29,7 @@ impl<'a, const HEIGHT: usize> LatticeAccelerator for CompactKdTree<'a, HEIGHT> {
     type Walk = CompactKdWalk<'a, HEIGHT>;
 
     #[inline(always)]
-    fn walk(&self, _ray: &LatticeRay) -> CompactKdWalk<'a, HEIGHT> {
+    fn walk(&self) -> CompactKdWalk<'a, HEIGHT> {
         CompactKdWalk {
             nodes: self.nodes,
             references: self.references,
@@ -43,10 +43,10 @@ impl<'a, const HEIGHT: usize> LatticeWalk for CompactKdWalk<'a, HEIGHT> {
     type Leaf = Leaf<'a>;
 
     #[inline(never)]
-    fn next_leaf(&mut self, ray: &LatticeRay, depth: i32) -> Option<Leaf<'a>> {
+    fn next_leaf<P: LatticePath>(&mut self, path: &P, depth: i32) -> Option<Leaf<'a>> {
         let nodes = self.nodes;
         let has_begun = mem::replace(&mut self.has_begun, true);
-        let mut cell = if has_begun { self.waiting.pop(depth)? } else { LatticeSegment::whole(ray) };
+        let mut cell = if has_begun { self.waiting.pop(depth)? } else { LatticeSegment::whole(path) };
         loop {
             let node = Node::from_word(*nodes.get(cell.node as usize)?);
             let axis = node.axis_or_leaf();
@@ -58,8 +58,9 @@ impl<'a, const HEIGHT: usize> LatticeWalk for CompactKdWalk<'a, HEIGHT> {
                 continue;
             }
             // The child on the ray's side first.
-            let descended = node.is_descended(ray.descending);
-            let (entry, exit) = ray.views.get(axis as usize)?.depths(node.plane() << 2);
+            let descended = node.is_descended(path.descending());
+            let plane = node.plane() << 2;
+            let (entry, exit) = (path.entry(axis, plane)?, path.exit(axis, plane)?);
             if node.is_cut() {
                 // One child: the cell shrinks to it, or the ray passes it by.
                 if node.is_empty_on_the_right() != descended {
