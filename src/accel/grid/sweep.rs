@@ -104,7 +104,7 @@ enum Crossed {
     Clear,
     /// Nothing: it is close to the crossing before.
     Close,
-    /// Nothing but where the plane behind it is crossed: it is behind the end.
+    /// No cell: the plane is behind the end.
     End,
 }
 
