@@ -91,6 +91,13 @@ impl Entries {
         self.0.is_empty()
     }
 
+    /// Whether walks begin as ever: they may as well be asked for by [`closest_hit`](crate::Scene::closest_hit), which over a grid
+    /// takes two thirds of the instructions.
+    #[must_use]
+    pub fn is_everything(&self) -> bool {
+        self.0.first().is_some_and(|entry| entry.enter == f32::NEG_INFINITY)
+    }
+
     /// The entries, the nearest first.
     pub fn iter(&self) -> impl Iterator<Item = &Entry> {
         self.0.iter()

@@ -36,6 +36,7 @@ const LIGHTS: usize = 4;
 impl<'a, S: Caster + ?Sized> Patch<'a, S> {
     pub(super) fn new(renderer: Renderer<'a, S>, tile: &Tile) -> Self {
         let entries = renderer.bundle(tile).map(|bundle| renderer.scene.enter(&bundle));
+        let entries = entries.filter(|entries| !entries.is_everything());
         Self { renderer, entries, occluders: Default::default() }
     }
 
