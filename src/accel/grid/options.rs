@@ -42,26 +42,26 @@ pub struct Options {
 }
 
 impl Options {
-    /// The fewest bytes that still make a grid worth its name: 8 to 13 per triangle.
+    /// The fewest bytes that still make a grid worth its name: 4 to 9 per triangle.
     #[must_use]
     pub const fn small() -> Self {
         Self { density: 1.0, bytes_per_primitive: 24, ..Self::balanced() }
     }
 
-    /// Half as many tests as [`small`](Self::small): 11 to 18 bytes per triangle.
+    /// Half as many tests as [`small`](Self::small): 6 to 14 bytes per triangle.
     #[must_use]
     pub const fn balanced() -> Self {
         Self { density: 2.5, form: Form::Bitmask, clip: true, bytes_per_primitive: 40, max_bytes: None }
     }
 
-    /// The least work per ray: 24 to 40 bytes per triangle.
+    /// The least work per ray: 21 to 30 bytes per triangle.
     #[must_use]
     pub const fn fast() -> Self {
         Self { density: 4.0, form: Form::Octants, bytes_per_primitive: 64, ..Self::balanced() }
     }
 
     /// Quickly built where it stands, for what moves: no doubles are computed, and the arena needs no more words than the
-    /// grid will have, from about 5,000 primitives on two bytes more per cell. 11 to 25 bytes per triangle.
+    /// grid will have, from about 5,000 primitives on two bytes more per cell. 12 to 20 bytes per triangle.
     #[must_use]
     pub const fn quick() -> Self {
         Self { density: 1.0, form: Form::Full, clip: false, ..Self::balanced() }
