@@ -297,29 +297,6 @@ fn closed_meshes_do_not_leak() {
     }
 }
 
-/// Samples are asked for at once, too: tiles are the pixels, bit for bit.
-#[test]
-fn samples_of_a_tile_are_those_of_its_pixels() {
-    let (vertices, triangles) = ball(12);
-    let mesh = Mesh::new(&vertices, &triangles[..]).unwrap();
-    let snapped = bake::lattice(&mesh);
-    let mesh = snapped.mesh(&mesh).unwrap();
-    let words = bake::build(&mesh, &Plan::DualSplit(dualsplit::Options::fast())).unwrap();
-    let scene = LatticeScene::new(DualSplit::open(&words).unwrap(), &mesh).unwrap();
-    let camera = Camera::pinhole(Vec3::new(0.3, 1.0, 4.0), Vec3::ZERO, Vec3::Y, 0.7);
-    let lights = [Light::directional(Vec3::new(0.3, -1.0, -0.2), Vec3::ONE)];
-    for samples in [1, 2, 3, 8] {
-        let renderer = Renderer::new(&scene, camera, 61, 47).with_samples(samples).with_lights(&lights);
-        for tile in renderer.tiles(13, 9) {
-            let mut filled = vec![Vec3::ZERO; tile.area()];
-            renderer.fill(tile, &mut filled).unwrap();
-            for ((x, y), light) in tile.pixels().zip(filled) {
-                assert_eq!(light, renderer.pixel(x, y), "{samples}: {x} {y}");
-            }
-        }
-    }
-}
-
 fn picture<S: Caster>(scene: &S, camera: Camera, side: u32) -> Vec<[u8; 3]> {
     let lights = [Light::directional(Vec3::new(-1.0, -2.0, -0.5), Vec3::ONE)];
     let renderer = Renderer::new(scene, camera, side, side).with_lights(&lights).with_bounces(1);

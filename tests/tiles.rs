@@ -8,7 +8,7 @@ use std::cell::Cell;
 
 use common::{Random, adversarial_mesh, bits, coordinate, plans, point};
 use hitscan::{
-    Hit, List, Mesh, Ray, Scene,
+    DualSplit, Hit, LatticeScene, List, Mesh, Ray, Scene,
     accel::{Accelerator, Plan, Structure},
     asset::Kind,
     bake,
@@ -81,15 +81,15 @@ fn same_at_once<A: Accelerator, P: Primitives>(
 }
 
 /// A scene that compares all hits of rays at once with each by itself.
-struct Compared<'a, A, P> {
-    scene: &'a Scene<A, P>,
+struct Compared<'a, S> {
+    scene: &'a S,
     what: &'a str,
     rays: Cell<u32>,
 }
 
-impl<A: Accelerator, P: Primitives> Caster for Compared<'_, A, P> {
-    fn closest_hit(&self, ray: &Ray, _: u32) -> Option<Hit> {
-        self.scene.closest_hit(ray)
+impl<S: Caster> Caster for Compared<'_, S> {
+    fn closest_hit(&self, ray: &Ray, depth: u32) -> Option<Hit> {
+        self.scene.closest_hit(ray, depth)
     }
 
     fn closest_hits(&self, pencil: &Pencil, hits: &mut ItemBuffer) -> bool {
@@ -97,15 +97,20 @@ impl<A: Accelerator, P: Primitives> Caster for Compared<'_, A, P> {
         for (row, column) in (0..pencil.rows()).flat_map(|row| (0..pencil.columns()).map(move |column| (row, column))) {
             let (at_once, ray) = (hits.get(column, row), pencil.ray(column, row));
             if is_done {
-                assert_eq!(bits(at_once), bits(self.scene.closest_hit(&ray)), "{}: {ray:?} of {pencil:?}", self.what);
+                assert_eq!(
+                    bits(at_once),
+                    bits(self.scene.closest_hit(&ray, 0)),
+                    "{}: {ray:?} of {pencil:?}",
+                    self.what
+                );
                 self.rays.set(self.rays.get() + 1);
             }
         }
         is_done
     }
 
-    fn any_hit(&self, ray: &Ray, _: u32) -> bool {
-        self.scene.any_hit(ray)
+    fn any_hit(&self, ray: &Ray, depth: u32) -> bool {
+        self.scene.any_hit(ray, depth)
     }
 
     fn surface(&self, ray: &Ray, hit: &Hit) -> Surface {
@@ -117,38 +122,45 @@ impl<A: Accelerator, P: Primitives> Caster for Compared<'_, A, P> {
     }
 }
 
-/// Samples are asked for at once, too: tiles are the pixels, bit for bit.
+/// A tile of a picture of 31 x 31 pixels is the pixels, bit for bit; how many rays were answered at once.
+fn tile_of_pixels<S: Caster>(scene: &S, camera: Camera, samples: u32) -> u32 {
+    let lights = [Light::directional(Vec3::new(0.3, -1.0, 0.2), Vec3::ONE)];
+    let compared = Compared { scene, what: "samples", rays: Cell::new(0) };
+    let renderer = Renderer::new(&compared, camera, 31, 31).with_samples(samples).with_lights(&lights);
+    let tile = Tile { x: 9, y: 11, width: 5, height: 3 };
+    let mut filled = [Vec3::ZERO; 15];
+    renderer.fill(tile, &mut filled).unwrap();
+    for ((x, y), light) in tile.pixels().zip(filled) {
+        let pixel = renderer.pixel(x, y);
+        assert_eq!(light.to_array().map(f32::to_bits), pixel.to_array().map(f32::to_bits), "{samples}: {x} {y}");
+    }
+    compared.rays.get()
+}
+
+/// Samples are asked for at once, too.
 #[test]
 fn samples_of_a_tile_are_those_of_its_pixels() {
     let mut random = Random::new(44);
-    let mut rays = 0;
+    let (mut rays, mut on_lattice) = (0, 0);
     for round in 0..24 {
         let family = round % common::FAMILIES;
         let (vertices, triangles) = adversarial_mesh(&mut random, family, 80);
         let mesh = Mesh::new(&vertices, triangles.as_slice()).unwrap();
         let words = bake::build(&mesh, &Plan::KdTree(Default::default())).unwrap();
         let scene = Scene::new(Structure::open(Kind::KdTree, &words).unwrap(), &mesh).unwrap();
-        let lights = [Light::directional(Vec3::new(0.3, -1.0, 0.2), Vec3::ONE)];
+        let snapped = bake::lattice(&mesh);
+        let lattice = snapped.mesh(&mesh).unwrap();
+        let words = bake::build(&lattice, &Plan::DualSplit(Default::default())).unwrap();
+        let whole = LatticeScene::new(DualSplit::<32>::open(&words).unwrap(), &lattice).unwrap();
         for samples in [1, 2, 3, 8, 9] {
             let camera = camera(&mut random, family, &vertices);
-            let compared = Compared { scene: &scene, what: "samples", rays: Cell::new(0) };
-            let renderer = Renderer::new(&compared, camera, 31, 31).with_samples(samples).with_lights(&lights);
-            let tile = Tile { x: 9, y: 11, width: 5, height: 3 };
-            let mut filled = [Vec3::ZERO; 15];
-            renderer.fill(tile, &mut filled).unwrap();
-            for ((x, y), light) in tile.pixels().zip(filled) {
-                let pixel = renderer.pixel(x, y);
-                assert_eq!(
-                    light.to_array().map(f32::to_bits),
-                    pixel.to_array().map(f32::to_bits),
-                    "{samples}: {x} {y}"
-                );
-            }
-            assert!(samples <= 8 || compared.rays.get() == 0);
-            rays += compared.rays.get();
+            let at_once = [tile_of_pixels(&scene, camera, samples), tile_of_pixels(&whole, camera, samples)];
+            assert!(samples <= 8 || at_once == [0; 2]);
+            rays += at_once[0];
+            on_lattice += at_once[1];
         }
     }
-    assert!(rays > 5_000, "{rays}");
+    assert!(rays > 5_000 && on_lattice > 3_000, "{rays} {on_lattice}");
 }
 
 #[test]

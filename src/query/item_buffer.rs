@@ -1,4 +1,4 @@
-use super::start_of;
+use super::{recent::Recent, start_of};
 use crate::{
     accel::Accelerator,
     geometry::{Pencil, PreparedRay, beyond},
@@ -18,9 +18,6 @@ const RAYS: usize = (Pencil::SIDE * Pencil::SIDE) as usize;
 
 /// What no primitive has as its number.
 const NOTHING: Hit = Hit { t: f32::MAX, primitive: u32::MAX };
-
-/// How many of the triangles tested last are remembered.
-const RECENT: usize = 32;
 
 /// Triangles after which it is asked whether rays may hit half of them: where triangles are smaller than pixels, walks ray by
 /// ray see fewer.
@@ -100,13 +97,12 @@ impl<A: Accelerator, P: Primitives> Scene<A, P> {
         let all = pencil.all();
         let (mut missing, mut end) = (all.count_ones(), f32::INFINITY);
         let (mut met, mut tests, mut is_done) = (0, 0, true);
-        let mut recent = [u32::MAX; RECENT];
+        let mut recent = Recent::default();
         let walked = self.accelerator().sweep(&bundle, |leaf| {
             let mut is_changed = false;
             for index in leaf {
-                match recent.get_mut(index as usize % RECENT) {
-                    Some(place) if *place != index => *place = index,
-                    _ => continue,
+                if recent.knows(index) {
+                    continue;
                 }
                 let Some(outline) = self.primitives().outline(index) else {
                     is_done = false;

@@ -1,13 +1,10 @@
-use super::ItemBuffer;
+use super::{ItemBuffer, recent::Recent};
 use crate::{
     accel::{LatticeAccelerator, LatticeWalk},
     geometry::{Depth, LatticePath, LatticePencil, Pencil, Sight},
     lattice_scene::LatticeScene,
     primitives::{Hit, LatticeTriangles},
 };
-
-/// How many of the triangles tested last are remembered.
-const RECENT: usize = 32;
 
 /// Triangles after which it is asked whether rays may hit a quarter of them: where triangles are much smaller than pixels, walks
 /// ray by ray see fewer.
@@ -147,22 +144,5 @@ impl ItemBuffer {
             }
         }
         Some(deepest)
-    }
-}
-
-/// The triangles met last, as many of them as 64 bytes hold.
-#[derive(Default)]
-struct Recent([u16; RECENT]);
-
-impl Recent {
-    /// Whether a triangle is known to be among them; it is from now on.
-    #[inline(always)]
-    fn knows(&mut self, index: u32) -> bool {
-        let Some(place) = self.0.get_mut(index as usize % RECENT) else { return false };
-        // Those with numbers too large are forgotten at once.
-        let mark = u16::try_from(index / RECENT as u32 + 1).unwrap_or(0);
-        let is_known = *place == mark && mark != 0;
-        *place = mark;
-        is_known
     }
 }

@@ -7,6 +7,7 @@ mod lattice_items;
 mod nearby;
 mod overlaps;
 mod paused;
+mod recent;
 
 pub(crate) use collector::{Any, Closest, Collector, Inner, Nearest, Next, Where, end_of, start_of};
 pub use hits::Hits;

@@ -33,8 +33,8 @@ pub(super) const fn words(primitives: usize, options: &Options) -> usize {
         usize::MAX => usize::MAX,
         bytes => bytes.div_ceil(4),
     };
-    let narrow = narrow_offsets(options.form, most_references(options.form, primitives, options.bytes(primitives)));
     let most = most_references(options.form, primitives, options.bytes(primitives));
+    let narrow = narrow_offsets(options.form, most);
     let scratch = match options.form {
         // The counts become the offsets.
         Form::Full if narrow => 0,
@@ -250,7 +250,7 @@ impl<P: Primitives + ?Sized> Builder<'_, '_, P> {
         let (frame, clip) = (&self.frame, self.options.clip);
         let (is_full, count) = (self.options.form == Form::Full, self.primitives.len() as usize);
         let (narrow, narrow_numbers) = (self.narrow, narrow_references(count));
-        let (first, cells) = (self.table(), frame.cells());
+        let (first, cells, used) = (self.table(), frame.cells(), self.unpacked(self.references));
         let (_, body) = self.words.split_at_mut_checked(first).unwrap_or_default();
         let (table, references) = body.split_at_mut_checked(number_words(cells + 1, narrow)).unwrap_or_default();
         let mut sum = 0;
@@ -258,11 +258,6 @@ impl<P: Primitives + ?Sized> Builder<'_, '_, P> {
             sum += get(table, cell, narrow);
             set(table, cell, sum, narrow);
         }
-        let used = if is_full {
-            list_words(Form::Full, self.references, count)
-        } else {
-            reference_words(self.references, count)
-        };
         references.iter_mut().take(used).for_each(|word| *word = 0);
         let numbers = if is_full { used } else { number_words(self.references, narrow_numbers) };
         let (references, octants) = references.split_at_mut_checked(numbers).unwrap_or_default();

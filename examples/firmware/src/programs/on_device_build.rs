@@ -48,7 +48,7 @@ fn built(build: &Build, mesh: &Mesh, arena: &mut Arena, counter: &Counter) -> bo
         Some(Ok(words)) => {
             let (length, enough) = (words.len(), (build.words)(mesh.len() as usize));
             println!(
-                "{name:16} {length:6} words, {enough:6} to build, {instructions:9} instructions, {stack:5} B of stack"
+                "{name:16} {length:6} words, {enough:6} always suffice, {instructions:9} instructions, {stack:5} B of stack"
             );
             figure("build", name, instructions);
             figure("build_stack", name, stack as u64);
