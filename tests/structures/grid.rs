@@ -369,8 +369,8 @@ fn walks_are_short_and_the_mailbox_makes_them_shorter() {
         assert!(cells as f32 > triangles.len() as f32 * options.density * 0.7, "{cells}");
         let per_cell = match options.form {
             Form::Full => 5.0,
-            Form::Octants => 5.5,
-            Form::Bitmask => 2.0,
+            Form::Octants => 4.3,
+            Form::Bitmask => 0.9,
         };
         assert!(bytes < options.density * per_cell + 9.0, "{bytes}");
         let mut random = Random::new(4);
