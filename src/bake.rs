@@ -1,6 +1,7 @@
 //! Baking (feature `alloc`): structures and assets made on a host, for anywhere.
 
 mod lattice;
+mod meshlets;
 
 use alloc::{vec, vec::Vec};
 
@@ -18,6 +19,7 @@ use crate::{
 };
 
 pub use lattice::{OnLattice, lattice};
+pub use meshlets::{InMeshlets, meshlets};
 
 /// Builds a structure in as much memory as that takes; its words are for its `open`, or for [`Baker::structure`].
 ///
@@ -144,6 +146,10 @@ impl Baker {
 
     fn indices(self, indices: Indices<'_>, vertices: usize) -> Self {
         let count = indices.len() as u32;
+        if let Indices::Meshlets(meshlets) = indices {
+            let words = core::iter::once(count).chain(meshlets.first().iter().copied());
+            return self.section(Kind::Meshlets, words.chain(bytes(meshlets.corners().as_flattened())).collect());
+        }
         let corners = (0..count).flat_map(|triangle| indices.get(triangle)).flatten();
         if matches!(indices, Indices::Narrow(_)) || vertices <= 1 << 16 {
             self.section(Kind::NarrowIndices, counted_halves(count, corners))
@@ -259,6 +265,11 @@ impl Baker {
 fn counted_halves(count: u32, numbers: impl Iterator<Item = u32>) -> Vec<u32> {
     let numbers: Vec<u32> = numbers.collect();
     core::iter::once(count).chain(halves(&numbers)).collect()
+}
+
+/// Bytes, four per word.
+fn bytes(bytes: &[u8]) -> impl Iterator<Item = u32> {
+    bytes.chunks(4).map(|four| four.iter().rev().fold(0, |word, &byte| word << 8 | u32::from(byte)))
 }
 
 /// Numbers of 16 bits, two per word.

@@ -34,6 +34,10 @@ fn what_is_no_mesh() {
     let mesh = Mesh::new(&CORNERS, &[[0_u32, 1, 2]]).unwrap();
     says(mesh.with_masks(&[1, 2]).unwrap_err(), "2 masks were given for 1 triangles");
     says(MeshError::Frame, "the box of the lattice is empty, not finite or beyond 2^126");
+    says(
+        MeshError::Meshlets { meshlets: 1, triangles: 65 },
+        "1 first vertices were given for 65 triangles, not one for each 64",
+    );
     says(MeshError::TooMany, "a mesh holds at most 2^32 - 2 triangles");
 }
 
@@ -120,6 +124,7 @@ fn what_is_no_asset() {
     let kinds = [
         (Kind::Vertices, "vertices"),
         (Kind::LatticeVertices, "lattice vertices"),
+        (Kind::Meshlets, "meshlets"),
         (Kind::NarrowIndices, "16-bit indices"),
         (Kind::WideIndices, "32-bit indices"),
         (Kind::Normals, "normals"),

@@ -9,6 +9,8 @@ pub enum Kind {
     Vertices,
     /// How many vertices, the box that their lattice is over, then three `u16` each.
     LatticeVertices,
+    /// How many triangles, a first vertex for each 64, then three `u8` each.
+    Meshlets,
     /// How many triangles, then three `u16` each.
     NarrowIndices,
     /// Triangles, three `u32` each.
@@ -50,9 +52,10 @@ pub enum Kind {
 }
 
 impl Kind {
-    const KNOWN: [Self; 20] = [
+    const KNOWN: [Self; 21] = [
         Self::Vertices,
         Self::LatticeVertices,
+        Self::Meshlets,
         Self::NarrowIndices,
         Self::WideIndices,
         Self::Normals,
@@ -78,6 +81,7 @@ impl Kind {
         match self {
             Self::Vertices => u32::from_le_bytes(*b"vert"),
             Self::LatticeVertices => u32::from_le_bytes(*b"lvtx"),
+            Self::Meshlets => u32::from_le_bytes(*b"idx1"),
             Self::NarrowIndices => u32::from_le_bytes(*b"idx2"),
             Self::WideIndices => u32::from_le_bytes(*b"idx4"),
             Self::Normals => u32::from_le_bytes(*b"nrml"),
@@ -132,6 +136,7 @@ impl fmt::Display for Kind {
         match self {
             Self::Vertices => f.write_str("vertices"),
             Self::LatticeVertices => f.write_str("lattice vertices"),
+            Self::Meshlets => f.write_str("meshlets"),
             Self::NarrowIndices => f.write_str("16-bit indices"),
             Self::WideIndices => f.write_str("32-bit indices"),
             Self::Normals => f.write_str("normals"),

@@ -1,19 +1,21 @@
 use glam::Vec3;
 
-use super::MeshError;
+use super::{MeshError, Meshlets};
 use crate::{
     asset::{Asset, AssetError, Kind, Stored},
     error::Error,
     geometry::in_range,
 };
 
-/// The corners of triangles: three vertex numbers each, in 16 bits where they fit.
+/// The corners of triangles: three vertex numbers each, in as few bits as they fit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Indices<'a> {
     /// Numbers up to 65,535: 6 bytes a triangle.
     Narrow(&'a [[u16; 3]]),
     /// Numbers up to 2^32 - 1: 12 bytes a triangle.
     Wide(&'a [[u32; 3]]),
+    /// Numbers that are counted from where each [`Meshlets::SIZE`] triangles begin: 3 bytes a triangle.
+    Meshlets(Meshlets<'a>),
 }
 
 impl<'a> Indices<'a> {
@@ -24,6 +26,7 @@ impl<'a> Indices<'a> {
         match self {
             Self::Narrow(list) => list.len(),
             Self::Wide(list) => list.len(),
+            Self::Meshlets(meshlets) => meshlets.len(),
         }
     }
 
@@ -40,6 +43,7 @@ impl<'a> Indices<'a> {
         match self {
             Self::Narrow(list) => list.get(triangle as usize).map(|corners| corners.map(u32::from)),
             Self::Wide(list) => list.get(triangle as usize).copied(),
+            Self::Meshlets(meshlets) => meshlets.get(triangle),
         }
     }
 
@@ -83,26 +87,33 @@ impl<'a, const N: usize> From<&'a [[u32; 3]; N]> for Indices<'a> {
     }
 }
 
-/// The section of indices, of either width.
+impl<'a> From<Meshlets<'a>> for Indices<'a> {
+    fn from(meshlets: Meshlets<'a>) -> Self {
+        Self::Meshlets(meshlets)
+    }
+}
+
+/// The section of indices, of whichever width.
 impl<'a> Stored<'a> for Indices<'a> {
     fn read(asset: &Asset<'a>) -> Result<Self, Error> {
-        match asset.section(Kind::NarrowIndices) {
-            Ok(words) => {
-                let error = AssetError::Shape { kind: Kind::NarrowIndices, words: words.len() };
-                let (&count, words) = words.split_first().ok_or(error)?;
-                let halves: &[u16] = bytemuck::try_cast_slice(words).map_err(|_| error)?;
-                let used = (count as usize).checked_mul(3).ok_or(error)?;
-                if used.next_multiple_of(2) != halves.len() {
-                    return Err(error.into());
-                }
-                let halves = halves.get(..used).ok_or(error)?;
-                Ok(Self::Narrow(bytemuck::try_cast_slice(halves).map_err(|_| error)?))
-            }
-            Err(_) => {
-                let words = asset.section(Kind::WideIndices)?;
-                let error = AssetError::Shape { kind: Kind::WideIndices, words: words.len() };
-                Ok(Self::Wide(bytemuck::try_cast_slice(words).map_err(|_| error)?))
-            }
+        if let Ok(words) = asset.section(Kind::Meshlets) {
+            let error = AssetError::Shape { kind: Kind::Meshlets, words: words.len() };
+            return Ok(Self::Meshlets(Meshlets::of_words(words).ok_or(error)?));
         }
+        if let Ok(words) = asset.section(Kind::NarrowIndices) {
+            let error = AssetError::Shape { kind: Kind::NarrowIndices, words: words.len() };
+            return Ok(Self::Narrow(narrow(words).ok_or(error)?));
+        }
+        let words = asset.section(Kind::WideIndices)?;
+        let error = AssetError::Shape { kind: Kind::WideIndices, words: words.len() };
+        Ok(Self::Wide(bytemuck::try_cast_slice(words).map_err(|_| error)?))
     }
+}
+
+/// A count and so many corners, an odd number of which is padded to a word.
+fn narrow(words: &[u32]) -> Option<&[[u16; 3]]> {
+    let (&count, words) = words.split_first()?;
+    let halves: &[u16] = bytemuck::try_cast_slice(words).ok()?;
+    let used = (count as usize).checked_mul(3).filter(|used| used.next_multiple_of(2) == halves.len())?;
+    bytemuck::try_cast_slice(halves.get(..used)?).ok()
 }

@@ -59,6 +59,13 @@ pub enum MeshError {
         /// How many triangles there are.
         triangles: u32,
     },
+    /// Not one first vertex for each [`Meshlets::SIZE`](super::Meshlets::SIZE) triangles.
+    Meshlets {
+        /// How many first vertices were given.
+        meshlets: usize,
+        /// How many triangles there are.
+        triangles: usize,
+    },
 }
 
 impl fmt::Display for MeshError {
@@ -73,6 +80,9 @@ impl fmt::Display for MeshError {
             Self::Frame => write!(f, "the box of the lattice is empty, not finite or beyond 2^126"),
             Self::TooMany => write!(f, "a mesh holds at most 2^32 - 2 triangles"),
             Self::Masks { masks, triangles } => write!(f, "{masks} masks were given for {triangles} triangles"),
+            Self::Meshlets { meshlets, triangles } => {
+                write!(f, "{meshlets} first vertices were given for {triangles} triangles, not one for each 64")
+            }
         }
     }
 }

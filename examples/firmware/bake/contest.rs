@@ -3,7 +3,7 @@
 use std::{error::Error, fs, path::Path};
 
 use hitscan::{
-    Mesh, Scene,
+    Grid, Mesh, Primitives, Scene,
     accel::{List, Plan, Structure},
     bake::{self, Baker},
     bvh, dualsplit, grid, kdtree, octree,
@@ -30,11 +30,25 @@ fn plans() -> Vec<(&'static str, Plan)> {
     ]
 }
 
-/// The finest grid within so many bytes.
-fn grid_within(mesh: &Mesh<'_>, bytes: usize) -> Plan {
-    let finer = (0..8).map(|step| grid::Options { density: 3.0 - 0.25 * step as f32, ..grid::Options::balanced() });
-    let fits = |plan: &Plan| bake::build(mesh, plan).is_ok_and(|words| words.len() * 4 <= bytes);
-    finer.map(Plan::Grid).find(fits).unwrap_or(Plan::Grid(grid::Options::small()))
+/// An asset, and the bytes of the structure in it.
+type Asset = (Vec<u32>, usize);
+
+/// The asset of the finest grid with which it takes at most so many bytes.
+fn finest_grid(most: usize, asset: impl Fn(&Plan) -> Result<Asset, Box<dyn Error>>) -> Result<Asset, Box<dyn Error>> {
+    let densities = (4..80).rev().map(|step| step as f32 / 20.0);
+    for density in densities {
+        let (words, structure) = asset(&Plan::Grid(grid::Options { density, ..grid::Options::balanced() }))?;
+        if words.len() * 4 <= most {
+            return Ok((words, structure));
+        }
+    }
+    Err("no grid fits".into())
+}
+
+/// The asset of triangles under a grid.
+fn under_grid<P: Primitives>(primitives: &P, baker: Baker, plan: &Plan) -> Result<Asset, Box<dyn Error>> {
+    let words = bake::build(primitives, plan)?;
+    Ok((baker.structure(Grid::open(&words)?).finish(), words.len() * 4))
 }
 
 /// The line of a contestant, whose asset goes to a file.
@@ -62,10 +76,7 @@ pub fn contest(out: &Path, small: bool) -> Result<String, Box<dyn Error>> {
     for (size, (along, around)) in knots.into_iter().take(if small { 1 } else { 2 }) {
         let (vertices, triangles) = knot::mesh(along, around);
         let mesh = Mesh::new(&vertices, triangles.as_slice())?;
-        // Vertices, indices, and what an asset has for its table.
-        let rest = 24 * triangles.len() - 12 * vertices.len() - 6 * triangles.len() - 128;
-        let plans = plans().into_iter().chain([("grid within-24", grid_within(&mesh, rest))]);
-        for (name, plan) in plans.filter(|(name, _)| !small || few.contains(name)) {
+        for (name, plan) in plans().into_iter().filter(|(name, _)| !small || few.contains(name)) {
             let kind = plan.kind().ok_or("every plan has a kind")?;
             let mut words = bake::build(&mesh, &plan)?;
             let mut corners = bake::reorder(&mesh, &(0..mesh.indices().len() as u32).collect::<Vec<_>>());
@@ -80,6 +91,24 @@ pub fn contest(out: &Path, small: bool) -> Result<String, Box<dyn Error>> {
             let answer = camera_answer(&Scene::new(List::new(&mesh)?, &mesh)?);
             code += &contestant(out, (size, name), (corners.len(), words.len() * 4), asset, answer)?;
         }
+    }
+    code += "];\n\n/// The finest grids within bytes a triangle: over a mesh, and over meshlets on a lattice.\n";
+    code += "pub static GRIDS: &[Contestant] = &[\n";
+    for (size, (along, around)) in knots.into_iter().take(if small { 0 } else { 2 }) {
+        let (vertices, triangles) = knot::mesh(along, around);
+        let mesh = Mesh::new(&vertices, triangles.as_slice())?;
+        let all = triangles.len();
+        let (asset, bytes) = finest_grid(24 * all, |plan| under_grid(&mesh, Baker::new().mesh(&mesh), plan))?;
+        let answer = camera_answer(&Scene::new(List::new(&mesh)?, &mesh)?);
+        code += &contestant(out, (size, "grid within-24"), (all, bytes), asset, answer)?;
+        let meshlets = bake::meshlets(&mesh);
+        let vertices = meshlets.vertices(&vertices);
+        let snapped = bake::lattice(&Mesh::new(&vertices, meshlets.indices())?);
+        let mesh = snapped.mesh(meshlets.indices())?;
+        let baker = Baker::new().lattice_mesh(&mesh);
+        let (asset, bytes) = finest_grid(14 * all, |plan| under_grid(&mesh, baker.clone(), plan))?;
+        let answer = camera_answer(&Scene::new(List::new(&mesh)?, &mesh)?);
+        code += &contestant(out, (size, "grid-lattice within-14"), (all, bytes), asset, answer)?;
     }
     code += "];\n\n/// Triangles with their corners, where there is room.\npub static SOUPS: &[Contestant] = &[\n";
     for (size, (along, around)) in knots.into_iter().take(if small { 0 } else { 2 }) {

@@ -5,14 +5,14 @@ use std::{error::Error, fmt::Write as _, fs, path::Path};
 use hitscan::{
     LatticeMesh, LatticeScene, Mesh,
     accel::{List, Plan, Structure},
-    bake::{self, Baker},
+    bake::{self, Baker, InMeshlets, OnLattice},
     dualsplit, kdtree,
 };
 
 use crate::{answer::Answer, camera, knot};
 
 /// What `lattice` compares.
-fn plans(triangles: usize) -> [(&'static str, Plan); 5] {
+fn plans(triangles: usize) -> [(&'static str, Plan); 6] {
     [
         // Within 24 bytes per triangle, of which its corners and vertices take 9.
         ("lattice-kdtree-compact small", Plan::CompactKdTree(kdtree::Options::small().fit(triangles * 59 / 4))),
@@ -20,6 +20,7 @@ fn plans(triangles: usize) -> [(&'static str, Plan); 5] {
         ("lattice-dual-split small", Plan::DualSplit(dualsplit::Options::small())),
         ("lattice-dual-split balanced", Plan::DualSplit(dualsplit::Options::balanced())),
         ("lattice-dual-split fast", Plan::DualSplit(dualsplit::Options::fast())),
+        ("lattice-dual-split meshlets", Plan::DualSplit(dualsplit::Options::balanced())),
     ]
 }
 
@@ -39,7 +40,11 @@ pub fn contest(out: &Path, small: bool) -> Result<String, Box<dyn Error>> {
                 corners = bake::reorder(&mesh, &order);
                 words = ordered;
             }
-            let mesh = snapped.mesh(corners.as_slice())?;
+            // As they are, or in meshlets.
+            let packed = name.ends_with("meshlets").then(|| bake::meshlets(corners.as_slice()));
+            let moved = packed.as_ref().map(|packed| packed.vertices(&snapped.vertices));
+            let snapped = OnLattice { vertices: moved.unwrap_or(snapped.vertices.clone()), ..snapped };
+            let mesh = snapped.mesh(packed.as_ref().map_or(corners.as_slice().into(), InMeshlets::indices))?;
             let structure = words.len() * 4;
             let asset = Baker::new().lattice_mesh(&mesh).structure(Structure::open(kind, &words)?).finish();
             let file = out.join(format!("{} {name}.hits", triangles.len()));

@@ -47,6 +47,10 @@ fn half_word(start: u32, index: u32) -> u32 {
     return (word(start + (index >> 1u)) >> ((index & 1u) * 16u)) & 0xffffu;
 }
 
+fn byte(start: u32, index: u32) -> u32 {
+    return (word(start + (index >> 2u)) >> ((index & 3u) * 8u)) & 0xffu;
+}
+
 fn number(index: u32) -> f32 {
     return bitcast<f32>(word(index));
 }
@@ -86,6 +90,12 @@ fn corners(part: Part, triangle: u32) -> Corners {
             half_word(part.indices, first + 1u),
             half_word(part.indices, first + 2u),
         );
+    } else if (part.form & 16u) != 0u {
+        // Bytes behind a first vertex for each 64 triangles.
+        let bytes = part.indices + ((part.primitives + 63u) >> 6u);
+        let first = triangle * 3u;
+        at = vec3(byte(bytes, first), byte(bytes, first + 1u), byte(bytes, first + 2u))
+            + vec3(word(part.indices + (triangle >> 6u)));
     } else {
         let first = part.indices + triangle * 3u;
         at = vec3(word(first), word(first + 1u), word(first + 2u));

@@ -26,7 +26,11 @@ impl Part {
         let node = if self.structure == 2 { 32.0 } else { 8.0 };
         let reference = [0.0, 2.0, 4.0, 0.0][self.form as usize & 3];
         let vertices = if self.form & 4 == 0 { 36.0 } else { 18.0 };
-        let corners = if self.form & 8 == 0 { 12.0 } else { 6.0 };
+        let corners = match self.form & 24 {
+            0 => 12.0,
+            8 => 6.0,
+            _ => 7.0,
+        };
         (node, reference + vertices + corners)
     }
 }
@@ -180,9 +184,10 @@ fn triangles(part: Part, whole: &[u32], asset: &Asset<'_>) -> Result<Part, Unfit
         Ok(start) => (start + 7, 4),
         Err(_) => (section(Kind::Vertices)?, 0),
     };
-    let (indices, narrow) = match section(Kind::NarrowIndices) {
-        Ok(start) => (start + 1, 8),
-        Err(_) => (section(Kind::WideIndices)?, 0),
+    let (indices, width) = match (section(Kind::Meshlets), section(Kind::NarrowIndices)) {
+        (Ok(start), _) => (start + 1, 16),
+        (_, Ok(start)) => (start + 1, 8),
+        _ => (section(Kind::WideIndices)?, 0),
     };
-    Ok(Part { vertices, indices, form: part.form | lattice | narrow, ..part })
+    Ok(Part { vertices, indices, form: part.form | lattice | width, ..part })
 }

@@ -1,4 +1,5 @@
 mod table;
+mod vertices;
 
 use std::{
     fmt::Write as _,
@@ -7,19 +8,20 @@ use std::{
 };
 
 use hitscan::{
-    LatticeMesh, Mesh, Primitives,
-    accel::Structure,
-    bake::{self, Baker, OnLattice},
-    glam::Vec3,
+    Mesh, Primitives,
+    bake::{self, Baker},
 };
 
-use self::table::table;
+use self::{
+    table::table,
+    vertices::{Triangles, Vertices, dressed, neighbours},
+};
 use super::{predict, print};
 use crate::{
-    chip::{self, Chip},
+    chip::Chip,
     failure::{self, Failure},
     output,
-    scene::{Built, Choice, Geometry, Named, Palette, Preset, Skin, Source, StructureArgs, broken, normals_by_place},
+    scene::{Built, Choice, Geometry, Named, Preset, Source, StructureArgs, broken, normals_by_place},
     units::parse_bytes,
     world::{self, write_words},
 };
@@ -52,11 +54,15 @@ pub struct Bake {
     /// Put the vertices on a lattice of 16 bits per coordinate: 6 bytes each instead of 12
     #[arg(long)]
     lattice: bool,
+    /// Store corners in 3 bytes a triangle instead of 6 or 12, for 3 % more instructions per ray; triangles that follow one
+    /// another should be neighbours, as in most models, or vertices are there several times
+    #[arg(long)]
+    meshlets: bool,
     /// Store the vertices' normals, in 2 bytes each: triangles are shaded as if they were curved, but for sharp edges
     #[arg(long, conflicts_with = "lattice")]
     normals: bool,
     /// Store the corners of each triangle beside each other, for the fewest instructions per ray: in 36 bytes a triangle
-    #[arg(long, conflicts_with_all = ["target", "keep_numbers", "lattice", "normals", "textures", "fit"])]
+    #[arg(long, conflicts_with_all = ["target", "keep_numbers", "lattice", "meshlets", "normals", "textures", "fit"])]
     soup: bool,
     /// Store the materials' textures, of at most N pixels along a side (256 if not given), in at most 2 bytes a pixel and 4
     /// a vertex; where a texture has seams, vertices are there several times
@@ -83,41 +89,55 @@ impl Bake {
         if self.soup {
             return self.soup(&model, geometry);
         }
-        let normals = self.normals.then(|| normals_by_place(&model));
-        let snapped = self.lattice.then(|| bake::lattice(&model));
-        let snapped = snapped.as_ref();
-        let shapes = Triangles::of(&model, snapped)?;
+        let vertices = Vertices {
+            positions: geometry.vertices.clone(),
+            snapped: self.lattice.then(|| bake::lattice(&model)),
+            normals: self.normals.then(|| normals_by_place(&model)),
+            skin: geometry.skin.as_deref().cloned(),
+        };
+        let palette = &geometry.palette;
+        let bake = if self.meshlets { Vertices::bake_meshlets } else { Vertices::bake };
         let unmoved: Vec<u32> = (0..model.len()).collect();
-        let extras = Extras { normals: normals.as_deref(), skin: geometry.skin.as_deref() };
-        let numbers = self.keep_numbers.then_some(&unmoved);
-        let bare = bake(&shapes, extras, &geometry.palette, None, numbers).len() * 4;
-        let most = self.fit.map(|most| room(most, bare)).transpose()?;
-        let (built, order) = match self.target {
-            Some(chip) => shapes.choose(chip, self.structure.unwrap_or_default(), most),
-            None => {
-                let structure = self.structure.unwrap_or(Choice::Named(Named::assumed()));
-                shapes.build(structure, self.preset.unwrap_or_default(), most)
-            }
-        }?;
-        let corners = bake::reorder(&model, &order);
+        let near = if self.meshlets { neighbours(&model)? } else { unmoved.clone() };
+        let corners = bake::reorder(&model, &near);
         let model = Mesh::new(model.vertices(), &corners[..]).map_err(broken)?;
-        let shapes = Triangles::of(&model, snapped)?;
+        let shapes = vertices.triangles(model.indices())?;
+        let numbers = self.keep_numbers.then_some(&unmoved);
+        let bare = bake(&vertices, model.indices(), palette, None, numbers)?.len() * 4;
+        // What there was too much, because vertices stand several times in the order of the leaves.
+        let mut excess = 0;
+        let (built, corners, words) = loop {
+            let most = self.fit.map(|most| room(most, bare + excess)).transpose()?;
+            let (built, order) = match self.target {
+                Some(chip) => shapes.choose(chip, self.structure.unwrap_or_default(), most),
+                None => {
+                    let structure = self.structure.unwrap_or(Choice::Named(Named::assumed()));
+                    shapes.build(structure, self.preset.unwrap_or_default(), most)
+                }
+            }?;
+            let corners = bake::reorder(&model, &order);
+            let order: Vec<u32> = order.iter().map(|&place| near[place as usize]).collect();
+            let keeps = self.keep_numbers && order != unmoved;
+            let palette = if keeps { palette.clone() } else { palette.reordered(&order) };
+            let mesh = Mesh::new(model.vertices(), &corners[..]).map_err(broken)?;
+            let numbers = keeps.then_some(&order);
+            let words = bake(&vertices, mesh.indices(), &palette, Some(built.structure(&mesh)?), numbers)?;
+            match self.fit.map_or(0, |most| (words.len() * 4).saturating_sub(most)) {
+                0 => break (built, corners, words),
+                more if self.meshlets && excess == 0 && more < built.bytes() => excess = more,
+                _ => return Err(too_large(self.fit, &built, words.len() * 4)),
+            }
+        };
+        let model = Mesh::new(model.vertices(), &corners[..]).map_err(broken)?;
         let structure = built.structure(&model)?;
-        let keeps = self.keep_numbers && order != unmoved;
-        let palette = if keeps { geometry.palette.clone() } else { geometry.palette.reordered(&order) };
-        let words = bake(&shapes, extras, &palette, Some(structure), keeps.then_some(&order));
-        if let Some(most) = self.fit.filter(|most| words.len() * 4 > *most) {
-            let what = format!("--fit {most}: with this structure ({}) it takes {} bytes", built.name, words.len() * 4);
-            return Err(Failure::new(what, "allow more bytes, or choose another structure, such as kdtree"));
-        }
         write_words(&self.output, &words)?;
         let mut table = table(&words, &built, &structure, geometry.len(), &self.output)?;
-        if let Some(snapped) = snapped {
+        if let Some(snapped) = &vertices.snapped {
             let _ = writeln!(table, "vertices moved by at most {} to the lattice", snapped.displacement);
         }
         if let Some(chip) = self.target {
             let asset = words.len() * 4;
-            match &shapes {
+            match &vertices.triangles(model.indices())? {
                 Triangles::Plain(mesh) => predict(&mut table, chip, &built, mesh, asset),
                 Triangles::OnLattice(mesh) => predict(&mut table, chip, &built, mesh, asset),
             }?;
@@ -153,6 +173,7 @@ impl Bake {
             ("--target", self.target.is_some()),
             ("--keep-numbers", self.keep_numbers),
             ("--lattice", self.lattice),
+            ("--meshlets", self.meshlets),
             ("--normals", self.normals),
             ("--soup", self.soup),
             ("--fit", self.fit.is_some()),
@@ -171,6 +192,11 @@ impl Bake {
     }
 }
 
+fn too_large(most: Option<usize>, built: &Built, bytes: usize) -> Failure {
+    let what = format!("--fit {}: with this structure ({}) it takes {bytes} bytes", most.unwrap_or(0), built.name);
+    Failure::new(what, "allow more bytes, or choose another structure, such as kdtree")
+}
+
 /// What the structure may take where the whole may take `most` and the rest takes `bare`.
 fn room(most: usize, bare: usize) -> Result<usize, Failure> {
     /// The structure's entry in the table, and up to three words of padding.
@@ -181,75 +207,4 @@ fn room(most: usize, bare: usize) -> Result<usize, Failure> {
 fn too_small(most: usize, least: usize) -> Failure {
     let what = format!("--fit {most}: the asset takes more than {least} bytes without a structure");
     Failure::new(what, "allow more bytes, or simplify the mesh")
-}
-
-/// The triangles as they are to be stored.
-enum Triangles<'a> {
-    Plain(Mesh<'a>),
-    OnLattice(LatticeMesh<'a>),
-}
-
-impl<'a> Triangles<'a> {
-    /// Those of `mesh`, between the vertices on a lattice if there are any.
-    fn of(mesh: &Mesh<'a>, snapped: Option<&'a OnLattice>) -> Result<Self, Failure> {
-        match snapped {
-            None => Ok(Self::Plain(*mesh)),
-            Some(snapped) => Ok(Self::OnLattice(snapped.mesh(mesh).map_err(broken)?)),
-        }
-    }
-
-    /// A structure over them, and the order of its leaves.
-    fn build(&self, choice: Choice, preset: Preset, most: Option<usize>) -> Result<(Built, Vec<u32>), Failure> {
-        match self {
-            Self::Plain(mesh) => Built::within(mesh, choice, preset, most)?.ordered(mesh),
-            Self::OnLattice(mesh) => Built::within(mesh, choice, preset, most)?.ordered(mesh),
-        }
-    }
-
-    /// The structure over them that is fastest on a chip, and the order of its leaves.
-    fn choose(&self, chip: Chip, choice: Choice, most: Option<usize>) -> Result<(Built, Vec<u32>), Failure> {
-        match self {
-            Self::Plain(mesh) => chip::choose(mesh, chip, choice, most)?.ordered(mesh),
-            Self::OnLattice(mesh) => chip::choose(mesh, chip, choice, most)?.ordered(mesh),
-        }
-    }
-}
-
-/// What there is of vertices and materials beyond the usual.
-#[derive(Clone, Copy)]
-struct Extras<'a> {
-    normals: Option<&'a [Vec3]>,
-    skin: Option<&'a Skin>,
-}
-
-fn bake(
-    shapes: &Triangles<'_>,
-    Extras { normals, skin }: Extras<'_>,
-    palette: &Palette,
-    structure: Option<Structure<'_>>,
-    numbers: Option<&Vec<u32>>,
-) -> Vec<u32> {
-    let mut baker = match shapes {
-        Triangles::Plain(mesh) => Baker::new().mesh(mesh),
-        Triangles::OnLattice(mesh) => Baker::new().lattice_mesh(mesh),
-    };
-    if let Some(normals) = normals {
-        baker = baker.normals(normals);
-    }
-    if let Some(structure) = structure {
-        baker = baker.structure(structure);
-    }
-    if let Some(numbers) = numbers {
-        baker = baker.numbers(numbers);
-    }
-    let baker = dressed(baker, palette);
-    match skin {
-        Some(skin) => skin.bake(baker).finish(),
-        None => baker.finish(),
-    }
-}
-
-/// With the materials of a model, if it names any.
-fn dressed(baker: Baker, palette: &Palette) -> Baker {
-    if palette.materials.is_empty() { baker } else { baker.materials(&palette.materials, palette.as_numbers()) }
 }

@@ -26,6 +26,7 @@ pub fn table(
         match section.kind {
             Kind::Vertices
             | Kind::LatticeVertices
+            | Kind::Meshlets
             | Kind::NarrowIndices
             | Kind::WideIndices
             | Kind::Normals

@@ -116,8 +116,12 @@ impl Info {
 
 /// What vertices and triangles take.
 fn bytes_of(mesh: &Mesh<'_>) -> usize {
-    let corner = if matches!(mesh.indices(), Indices::Narrow(_)) { 2 } else { 4 };
-    size_of_val(mesh.vertices()) + mesh.indices().len() * 3 * corner
+    let corners = match mesh.indices() {
+        Indices::Narrow(list) => size_of_val(list),
+        Indices::Wide(list) => size_of_val(list),
+        Indices::Meshlets(meshlets) => size_of_val(meshlets.corners()) + size_of_val(meshlets.first()),
+    };
+    size_of_val(mesh.vertices()) + corners
 }
 
 fn describe_mesh(text: &mut String, view: &View<'_>, anatomy: &Anatomy) {

@@ -3,7 +3,7 @@ mod picture;
 use std::{collections::HashMap, sync::Arc};
 
 use hitscan::{
-    bake::Baker,
+    bake::{Baker, InMeshlets},
     glam::Vec2,
     render::{Filter, Texture, Wrap},
 };
@@ -62,6 +62,11 @@ impl Skin {
         model.settle(is_pictured)?;
         let coordinates = unfold(model, is_pictured);
         Ok(Some(Self { coordinates, sheets }))
+    }
+
+    /// That of the same vertices in the order that meshlets take.
+    pub fn ordered(&self, meshlets: &InMeshlets) -> Self {
+        Self { coordinates: meshlets.vertices(&self.coordinates), sheets: self.sheets.clone() }
     }
 
     /// Adds its sections to those of a mesh.

@@ -8,11 +8,11 @@ use core::hint::black_box;
 
 use firmware::{
     Answer, Counter,
-    baked::{CONTEST, Contestant, SOUPS},
+    baked::{CONTEST, Contestant, GRIDS, SOUPS},
     camera, entry, finish, for_structure, stack_of,
 };
 use hitscan::{
-    Grid, KdTree, Mesh, Primitives, Ray, Scene, accel::Accelerator, asset::Stored, glam::Vec3, primitives::Soup,
+    Grid, KdTree, LatticeMesh, Mesh, Primitives, Ray, Scene, accel::Accelerator, asset::Stored, glam::Vec3, primitives::Soup,
 };
 use semihosting::println;
 
@@ -61,6 +61,12 @@ fn main() -> ! {
     let mut same = true;
     for contestant in black_box(CONTEST) {
         same &= for_structure!(contestant, measure_mesh)(&counter, contestant);
+    }
+    for contestant in black_box(GRIDS) {
+        same &= match contestant.name.split(' ').next() {
+            Some("grid") => measure::<Grid, Mesh>(&counter, contestant),
+            _ => measure::<Grid, LatticeMesh>(&counter, contestant),
+        };
     }
     for contestant in black_box(SOUPS) {
         same &= match contestant.name.split('-').next() {

@@ -54,8 +54,15 @@ pub enum Form {
     Plain,
     /// In the order of the leaves, with the numbers of old.
     Numbered,
+    /// Corners in bytes.
+    Meshlets,
     /// On a lattice.
     OnLattice,
+}
+
+impl Form {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Plain, Self::Numbered, Self::Meshlets, Self::OnLattice];
 }
 
 /// An asset that is not put together yet; none if nothing can be built over the mesh.
@@ -80,6 +87,14 @@ pub fn baker(vertices: &[Vec3], triangles: &[[u32; 3]], plan: &Plan, form: Form)
             let words = bake::build(&mesh, plan).ok()?;
             let structure = Structure::open(plan.kind().unwrap(), &words).unwrap();
             Some(Baker::new().lattice_mesh(&mesh).structure(structure))
+        }
+        Form::Meshlets => {
+            let meshlets = bake::meshlets(&mesh);
+            let vertices = meshlets.vertices(vertices);
+            let mesh = Mesh::new(&vertices, meshlets.indices()).ok()?;
+            let words = bake::build(&mesh, plan).ok()?;
+            let structure = Structure::open(plan.kind().unwrap(), &words).unwrap();
+            Some(Baker::new().mesh(&mesh).structure(structure))
         }
     }
 }
