@@ -85,6 +85,12 @@ fn assets() -> Vec<Vec<u32>> {
         assets.push(Baker::new().soup(&mesh).structure(structure(&plan, &words)).finish());
     }
 
+    let meshlets = bake::meshlets(&mesh);
+    let moved = meshlets.vertices(&vertices);
+    let packed = Mesh::new(&moved, meshlets.indices()).unwrap();
+    let words = bake::build(&packed, &plan).unwrap();
+    assets.push(Baker::new().mesh(&packed).structure(structure(&plan, &words)).finish());
+
     let both = (mesh, Spheres::new(&spheres).unwrap());
     let words = bake::build(&both, &plan).unwrap();
     let numbers: Vec<u8> = (0..both.len()).map(|i| (i % 2) as u8).collect();

@@ -52,6 +52,45 @@ fn the_budget_is_kept_or_refused() {
 }
 
 #[test]
+fn meshlets_take_three_bytes_a_triangle() {
+    let folder = Folder::new();
+    folder.write("waves.obj", waves(20));
+    let down = |i: u32| [(i % 50) as f32 * 0.4, 9.0, (i / 50) as f32 * 0.4, 0.01, -1.0, 0.02];
+    folder.write_rays("down.rays", &(0..2500).map(down).collect::<Vec<_>>());
+    for structure in ["dual-split", "grid", "bvh", "list"] {
+        folder.succeed(&format!("bake waves.obj -o plain.hits -s {structure}"));
+        folder.succeed(&format!("bake waves.obj -o packed.hits -s {structure} --meshlets"));
+        let less = folder.read("plain.hits").len() as i64 - folder.read("packed.hits").len() as i64;
+        // Of 800 triangles, with some of 441 vertices twice; the grid's lists change with the order.
+        assert!((1_300..2_600).contains(&less), "{structure} {less}");
+        assert!(folder.succeed("info packed.hits").contains("meshlets"));
+        folder.succeed(&format!("bake waves.obj -o both.hits -s {structure} --meshlets --lattice"));
+        assert!(folder.read("both.hits").len() + 2_400 < folder.read("packed.hits").len());
+        folder.succeed("cast plain.hits down.rays -o plain.bin");
+        folder.succeed("cast packed.hits down.rays -o packed.bin");
+        let parameters =
+            |name: &str| -> Vec<Vec<u8>> { folder.read(name).chunks(8).map(|hit| hit[..4].to_vec()).collect() };
+        assert!(parameters("plain.bin") == parameters("packed.bin"), "{structure}");
+    }
+    // Numbers are kept where that is wanted, and bytes where they are scarce.
+    folder.succeed("bake waves.obj -o plain.hits");
+    folder.succeed("bake waves.obj -o kept.hits -s grid --meshlets --keep-numbers");
+    for name in ["plain", "kept"] {
+        folder.succeed(&format!("cast {name}.hits down.rays -o {name}.bin"));
+    }
+    assert!(folder.read("plain.bin") == folder.read("kept.bin"));
+    let free = folder.read("both.hits").len();
+    for structure in ["kdtree", "grid", "auto"] {
+        for most in [free + 4000, free + 3000] {
+            folder.succeed(&format!("bake waves.obj -o tight.hits -s {structure} --meshlets --lattice --fit {most}"));
+            assert!(folder.read("tight.hits").len() <= most);
+        }
+    }
+    folder.succeed("render kept.hits -o picture.png --size 40x30");
+    folder.refuse("bake waves.obj -o none.hits --meshlets --soup");
+}
+
+#[test]
 fn vertices_on_a_lattice_take_half_the_bytes() {
     let folder = Folder::new();
     folder.write("waves.obj", waves(20));
