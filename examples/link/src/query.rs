@@ -9,8 +9,8 @@ use hitscan::{
     error::BuildError,
     geometry::{Bundle, LatticePath, Transform},
     primitives::{
-        Indices, LatticeTriangles, Mapped, Normals, Order, Proximity, Renumbering, Reordered, Sides, Smooth, Soup,
-        Spheres, Surface, TexCoords,
+        Indices, LatticeTriangles, Mapped, Meshlets, Normals, Order, Proximity, Renumbering, Reordered, Sides, Smooth,
+        Soup, Spheres, Surface, TexCoords,
     },
     query::ItemBuffer,
     render::{Camera, Tile},
@@ -53,6 +53,7 @@ pub fn all() {
     }
     with(&Own);
     lattice(mesh.indices());
+    meshlets();
     soup();
     with(&spheres);
     with(&(mesh, spheres));
@@ -63,6 +64,15 @@ pub fn all() {
     {
         with(&reordered);
         black_box(reordered.inner().len());
+    }
+}
+
+fn meshlets() {
+    let (mut first, mut corners) = (None, None);
+    let corners = some(|| [word() as u8, word() as u8, word() as u8], &mut corners);
+    if let Ok(meshlets) = Meshlets::new(some(word, &mut first), corners) {
+        black_box((meshlets.len(), meshlets.is_empty(), meshlets.get(word()), meshlets.first(), meshlets.corners()));
+        lattice(meshlets.into());
     }
 }
 
