@@ -208,6 +208,33 @@ fn every_query_at_every_depth_answers_as_a_gather() {
     assert!(hits * 20 > cast, "{hits} of {cast}");
 }
 
+/// What is farther away than a parameter can say is missed, placed or not: there is no telling on which side of it a ray passes.
+#[test]
+fn shapes_beyond_all_parameters_are_missed_at_any_depth() {
+    const FAR: f32 = 3.0e15;
+    let near = Aabb::new(Vec3::new(-0.1, -0.1, -0.2), Vec3::new(0.2, 0.1, 0.2));
+    // Makes the bounds of all so loose that the ray meets them where it passes far from the other.
+    let far = Aabb::new(Vec3::new(-FAR, FAR, -FAR), Vec3::new(-FAR, FAR, -FAR));
+    let shapes = || from_fn(2, |i| [near, far][i as usize], |_, _| Some(0.0));
+    let tree = |memory| KdTree::build(&shapes(), &mut Arena::new(memory), &Options::fast()).unwrap();
+    let mut memory = [0; 4096];
+    let linear = Mat3::from_cols(Vec3::X, Vec3::new(1.5202489, 1.0, 0.0), Vec3::new(0.0, -2.0, 1.0));
+    let transform = Transform::new(linear, Vec3::new(0.0, 0.1, 0.2)).unwrap();
+    let scenes = [Scene::new(tree(&mut memory), shapes()).unwrap()];
+    let mut placed = [Instance::new(0, transform)];
+    let instances = Instances::place(&scenes, &mut placed).unwrap();
+    let scene = Scene::new(List::new(&instances).unwrap(), instances).unwrap();
+    let origin = Vec3::new(-FAR, FAR, -FAR);
+    for sign in [1.0, -1.0] {
+        let ray = Ray::new(origin, Vec3::new(8.077936e-28, 0.0, -8.077936e-28) * sign).starting_at(f32::NEG_INFINITY);
+        assert!(instances.bounds(0).interval(&ray.prepare().unwrap()).is_some());
+        assert_eq!((scene.closest_hit(&ray), scene.any_hit(&ray)), (None, false));
+        assert_eq!(scene.hits(&ray).count(), 0);
+        let local = transform.ray(&ray);
+        assert_eq!(scenes[0].closest_hit(&local), None);
+    }
+}
+
 /// A shape that takes itself for certified and is hit far behind its bounds; it spares itself what is too far away.
 struct Distant(Aabb);
 

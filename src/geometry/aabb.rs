@@ -156,7 +156,7 @@ impl Aabb {
     }
 
     /// The slab test: where the ray's line enters the box and where it leaves, the exit widened by 2^-16; `None` if it
-    /// certainly misses.
+    /// certainly misses, or if all of the box is farther away than a parameter can say.
     ///
     /// Conservative: whatever the box contains is met within the interval, roundings included (ARCHITECTURE.md, R1
     /// and R2). The ray's own interval is not consulted. Kay and Kajiya, *Ray tracing complex scenes*, 1986.
@@ -170,7 +170,9 @@ impl Aabb {
             enter = greatest(ray.entry(axis, near), enter);
             exit = least(ray.exit(axis, far), exit);
         }
-        if enter > exit { None } else { Some((enter, exit)) }
+        // At infinity the order of faces is lost, and a line that misses would seem to be within all of them.
+        let is_missed = enter > exit || enter == f32::INFINITY || exit == f32::NEG_INFINITY;
+        if is_missed { None } else { Some((enter, exit)) }
     }
 
     /// A finite parameter before which the line hits nothing in the box: what is certified may be hit 2^-16 before the
