@@ -93,24 +93,34 @@ fn main() -> ! {
     for contestant in black_box(CONTEST) {
         same &= for_structure!(contestant, measure_mesh)(&counter, contestant);
     }
+    // A micro:bit has no room for more.
+    if cfg!(not(small)) {
+        same &= more(&counter);
+    }
+    finish(same)
+}
+
+/// Prints the other lines; whether all hits are the host's.
+fn more(counter: &Counter) -> bool {
+    let mut same = true;
     for contestant in black_box(GRIDS) {
         same &= match contestant.name.split(' ').next() {
-            Some("grid") => measure::<Grid, Mesh>(&counter, contestant),
-            _ => measure::<Grid, LatticeMesh>(&counter, contestant),
+            Some("grid") => measure::<Grid, Mesh>(counter, contestant),
+            _ => measure::<Grid, LatticeMesh>(counter, contestant),
         };
     }
     for contestant in black_box(SOUPS) {
         same &= match contestant.name.split('-').next() {
-            Some("grid") => measure::<Grid, Soup>(&counter, contestant),
-            _ => measure::<KdTree, Soup>(&counter, contestant),
+            Some("grid") => measure::<Grid, Soup>(counter, contestant),
+            _ => measure::<KdTree, Soup>(counter, contestant),
         };
     }
     for contestant in black_box(CONTEST) {
         same &= match contestant.name {
-            "grid fast" => measure_along::<Grid>(&counter, contestant),
-            "kdtree fast" => measure_along::<KdTree>(&counter, contestant),
+            "grid fast" => measure_along::<Grid>(counter, contestant),
+            "kdtree fast" => measure_along::<KdTree>(counter, contestant),
             _ => true,
         };
     }
-    finish(same)
+    same
 }
