@@ -6,6 +6,7 @@
 mod common;
 
 mod adversaries;
+mod along;
 mod bvh;
 mod compact;
 mod dualsplit;

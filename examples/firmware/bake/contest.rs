@@ -9,7 +9,7 @@ use hitscan::{
     bvh, dualsplit, grid, kdtree, octree,
 };
 
-use crate::{answer::Answer, camera_answer, knot};
+use crate::{answer::Answer, camera, camera_answer, knot};
 
 /// What `bench` compares.
 fn plans() -> Vec<(&'static str, Plan)> {
@@ -124,6 +124,19 @@ pub fn contest(out: &Path, small: bool) -> Result<String, Box<dyn Error>> {
             let asset = Baker::new().soup(&mesh).structure(structure).finish();
             code += &contestant(out, (size, name), (triangles.len(), words.len() * 4), asset, answer)?;
         }
+    }
+    code += "];\n\n/// What rays along axes meet, by how many triangles there are and of `camera::level` and `camera::parallel`.\n";
+    code += "pub static ALONG: &[(usize, [Answer; 2])] = &[\n";
+    for (_, (along, around)) in knots.into_iter().take(if small { 0 } else { 2 }) {
+        let (vertices, triangles) = knot::mesh(along, around);
+        let mesh = Mesh::new(&vertices, triangles.as_slice())?;
+        let list = Scene::new(List::new(&mesh)?, &mesh)?;
+        let answers = [camera::level, camera::parallel].map(|row| {
+            let mut answer = Answer::NONE;
+            (0..camera::HEIGHT).flat_map(row).for_each(|ray| answer.add(list.closest_hit(&ray)));
+            answer
+        });
+        code += &format!("    ({}, {answers:?}),\n", triangles.len());
     }
     Ok(code + "];\n")
 }

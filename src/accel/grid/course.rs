@@ -68,4 +68,13 @@ impl Course {
             absolute: farthest * (1.0 / 262_144.0) + f32::MIN_POSITIVE,
         }
     }
+
+    /// How much later a crossing must be than another for their order to be certain: of a ray that is in the bounds from `enter`
+    /// to `exit`, if these are the sum of its reciprocals.
+    #[inline(always)]
+    pub(super) fn margin(&self, enter: f32, exit: f32, reciprocals: f32, t_min: f32) -> f32 {
+        greatest(exit, -enter) * self.relative
+            + reciprocals * self.absolute
+            + ((t_min.abs() - t_min) * (1.0 / 4096.0) + 4.0 * f32::MIN_POSITIVE)
+    }
 }

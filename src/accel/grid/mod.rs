@@ -4,6 +4,7 @@
 //! 2008: cells are counted, the counts summed, and the references filled in from behind; then they are packed ([`Met`]). A [`Grid`] is made by
 //! [`Grid::build`] or checked by [`Grid::open`]; after either, no walk can leave its words or fail to end.
 
+mod along;
 mod build;
 mod cells;
 mod course;

@@ -4,21 +4,24 @@
 //! crossings come in their order if each is later than the last by more than a margin. Of two that are closer, both
 //! orders are taken. Where three are, the cursor begins anew and decides everything.
 
+use core::hint::black_box;
+
 use super::{
     Grid,
+    along::Along,
     cells::{Cells, OFFSET},
     course::{Course, Side, Spacing},
     met::Met,
 };
 use crate::{
     accel::{Accelerator, leaf::References, visit_by},
-    geometry::{Axis, AxisView, PreparedRay, beyond},
+    geometry::{Axis, AxisView, Lattice, PreparedRay, beyond},
     math::{greatest, least},
 };
 
 /// Where a ray crosses the planes of an axis.
-struct Crossings<'c> {
-    next: f32,
+pub(super) struct Crossings<'c> {
+    pub(super) next: f32,
     step: f32,
     /// What is added to the number of the cell.
     stride: u32,
@@ -28,11 +31,26 @@ struct Crossings<'c> {
 impl<'c> Crossings<'c> {
     /// Where a ray crosses the first plane, and where the last.
     #[inline(always)]
-    fn of(spacing: &'c Spacing, view: &AxisView) -> (Self, f32) {
+    pub(super) fn of(spacing: &'c Spacing, view: &AxisView) -> (Self, f32) {
         let side = &spacing.sides[(view.entry.to_bits() >> 31) as usize];
         let inverse = view.entry.abs();
         let next = (side.plane - view.origin) * view.entry;
         (Self { next, step: spacing.width * inverse, stride: side.stride, side }, next + spacing.extent * inverse)
+    }
+
+    /// Crosses all planes but one up to `from`: what the number of the cell has from this axis.
+    #[inline(always)]
+    pub(super) fn skip(&mut self, spacing: &Spacing, direction: f32, from: f32) -> u32 {
+        let per_cell = spacing.inverse * direction.abs();
+        let before = ((from - self.next) * per_cell) as u32;
+        self.next = (self.next + self.step) + before as i32 as f32 * self.step;
+        self.side.number.wrapping_add(before.wrapping_mul(self.stride))
+    }
+
+    /// The same where it crosses the next plane at `next`, or none: see [`Along`].
+    #[inline(always)]
+    fn at(self, next: f32) -> Self {
+        if next.abs() < f32::INFINITY { Self { next, ..self } } else { Self { next: f32::MAX, step: next, ..self } }
     }
 
     /// The octants of a cell in the halves along this axis that the ray may meet between these parameters.
@@ -85,9 +103,9 @@ impl<'c> Crossings<'c> {
 fn turned(x: f32, x_step: f32, y: f32, y_step: f32, z: f32, z_step: f32, margin: f32) -> u32 {
     let t = least(least(x, y), z);
     let (past, ahead) = (t - 2.0 * margin, t + 2.0 * margin);
-    // Written so that NaN is close.
+    // Written so that NaN is close. What is an infinite step before the next plane was not crossed.
     let [x, y, z] = [(x, x_step), (y, y_step), (z, z_step)].map(|(next, step)| {
-        let (is_next, is_last) = (!(next > ahead), !(next - step < past));
+        let (is_next, is_last) = (!(next > ahead), !(next - step < past) && step.abs() < f32::INFINITY);
         u32::from(is_next) | u32::from(is_last) << 3
     });
     let close = x | y << 1 | z << 2;
@@ -175,26 +193,34 @@ struct Sweep<'c> {
 impl<'c> Sweep<'c> {
     /// At the beginning of a ray; none if it misses the bounds.
     #[inline(always)]
-    fn of(course: &'c Course, ray: &PreparedRay) -> Option<Self> {
-        let Course { axes: [x, y, z], relative, absolute } = course;
+    fn of(course: &'c Course, lattice: &Lattice, ray: &PreparedRay) -> Option<Self> {
+        let [x, y, z] = &course.axes;
         let [vx, vy, vz, _] = &ray.views;
         let ((mut x, x_exit), (mut y, y_exit), (mut z, z_exit)) =
             (Crossings::of(x, vx), Crossings::of(y, vy), Crossings::of(z, vz));
         let t_min = ray.ray().t_min;
         let enter = greatest(greatest(greatest(x.next, t_min), y.next), z.next);
         let exit = least(least(x_exit, y_exit), z_exit);
-        let margin = greatest(exit, -enter) * relative
-            + ((vx.exit.abs() + vy.exit.abs()) + vz.exit.abs()) * absolute
-            + ((t_min.abs() - t_min) * (1.0 / 4096.0) + 4.0 * f32::MIN_POSITIVE);
-        if enter > exit + margin {
-            return None;
+        let margin = course.margin(enter, exit, (vx.exit.abs() + vy.exit.abs()) + vz.exit.abs(), t_min);
+        let length = exit + margin - enter;
+        // Negative, infinite or NaN, by one comparison.
+        if length.to_bits() >= f32::INFINITY.to_bits() {
+            if length < 0.0 {
+                return None;
+            }
+            // Read anew: else all rays would compute and keep before the comparison what only these take from here.
+            let (course, ray) = black_box((course, ray));
+            let mut along = Along::default();
+            let at = along.begin(course, lattice, ray)?;
+            let Along { next: [x_next, y_next, z_next], clear, behind, margin } = along;
+            let ([x, y, z], [vx, vy, vz, _]) = (&course.axes, &ray.views);
+            let ((x, _), (y, _), (z, _)) = (Crossings::of(x, vx), Crossings::of(y, vy), Crossings::of(z, vz));
+            let (x, y, z) = (x.at(x_next), y.at(y_next), z.at(z_next));
+            return Some(Self { x, y, z, at, clear, margin, behind });
         }
         let mut at = 0_u32;
         for (line, axis) in [&mut x, &mut y, &mut z].into_iter().zip(Axis::ALL) {
-            let per_cell = course.axes[axis as usize].inverse * axis.of(ray.ray().direction).abs();
-            let before = (((enter - margin) - line.next) * per_cell) as u32;
-            at = at.wrapping_add(line.side.number).wrapping_add(before.wrapping_mul(line.stride));
-            line.next = (line.next + line.step) + before as i32 as f32 * line.step;
+            at = at.wrapping_add(line.skip(&course.axes[axis as usize], axis.of(ray.ray().direction), enter - margin));
         }
         Some(Self { x, y, z, at, clear: enter - 2.0 * margin, margin, behind: exit - 0.5 * margin })
     }
@@ -267,7 +293,7 @@ impl<'a> Grid<'a> {
         t_max: f32,
         visit: &mut impl FnMut(Met<'a>) -> Option<f32>,
     ) {
-        let Some(sweep) = Sweep::of(&self.course, ray) else { return };
+        let Some(sweep) = Sweep::of(&self.course, &self.lattice, ray) else { return };
         let is_done =
             sweep.run(table, t_max, |(first, end), octants| visit(Met::new(self.entries, first, end, octants)));
         if !is_done {
