@@ -4,7 +4,7 @@
 
 mod common;
 
-use std::cell::Cell;
+use std::{cell::Cell, collections::BTreeMap};
 
 use common::{Random, adversarial_mesh, bits, coordinate, plans, point};
 use hitscan::{
@@ -58,18 +58,18 @@ fn same<A: Accelerator, P: Primitives>(scene: &Scene<A, P>, camera: &Camera, til
     }
 }
 
-/// All rays of a tile at once hit what each hits by itself.
+/// All rays of a tile at once hit what each hits by itself; whether they were asked for at once.
 fn same_at_once<A: Accelerator, P: Primitives>(
     scene: &Scene<A, P>,
     camera: &Camera,
     tile: &Tile,
     side: u32,
     what: &str,
-) {
-    let Some(pencil) = camera.pencil(tile, side, side) else { return };
+) -> bool {
+    let Some(pencil) = camera.pencil(tile, side, side) else { return false };
     let mut hits = ItemBuffer::new();
     if !scene.closest_hits(&pencil, &mut hits) {
-        return;
+        return false;
     }
     for (x, y) in tile.pixels() {
         let (column, row) = (x - tile.x, y - tile.y);
@@ -78,6 +78,7 @@ fn same_at_once<A: Accelerator, P: Primitives>(
         let (at_once, plain) = (hits.get(column, row), scene.closest_hit(&ray));
         assert_eq!(bits(at_once), bits(plain), "{what}: {ray:?} of {pencil:?}");
     }
+    true
 }
 
 /// A scene that compares all hits of rays at once with each by itself.
@@ -167,6 +168,7 @@ fn samples_of_a_tile_are_those_of_its_pixels() {
 fn entries_hold_all_that_a_tile_can_meet() {
     let mut random = Random::new(41);
     let mut hits = 0;
+    let mut tiles = BTreeMap::new();
     for round in 0..150 {
         let family = round % common::FAMILIES;
         let (vertices, triangles) = adversarial_mesh(&mut random, family, 80);
@@ -181,15 +183,19 @@ fn entries_hold_all_that_a_tile_can_meet() {
                 let (x, y) = if random.one_in(2) { (side / 2, side / 2) } else { (at(&mut random), at(&mut random)) };
                 let tile = Tile { x, y, width: 4.min(side - x), height: 4.min(side - y) };
                 same(&scene, &camera, &tile, side, name);
-                same_at_once(&scene, &camera, &tile, side, name);
+                let mut at_once = same_at_once(&scene, &camera, &tile, side, name);
                 let tile = Tile { x: x & !7, y: y & !7, width: 8, height: 8 };
-                same_at_once(&scene, &camera, &tile, side, name);
+                at_once |= same_at_once(&scene, &camera, &tile, side, name);
+                *tiles.entry(name).or_insert(0) += u32::from(at_once);
                 let ray = camera.ray(x as f32, y as f32, side, side);
                 hits += u32::from(scene.any_hit(&ray));
             }
         }
     }
     assert!(hits > 1_000, "{hits}");
+    for (name, at_once) in tiles {
+        assert_eq!(at_once > 100, !name.starts_with("grid"), "{name}: {at_once} of 600");
+    }
 }
 
 #[test]

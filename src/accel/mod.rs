@@ -3,6 +3,7 @@
 //! A structure is a small `Copy` view of words. It answers a ray with a [`Traversal`], a cursor that yields leaves; the
 //! queries of [`Scene`](crate::Scene) are short shells over it, written once for all structures.
 
+mod beam;
 mod bounded;
 pub mod bvh;
 mod counted;

@@ -73,8 +73,8 @@ impl<A: Accelerator, P: Primitives> Scene<A, P> {
     /// The first hits of all rays of a pencil, each that of [`closest_hit`](Self::closest_hit); false if they are to be asked
     /// for one by one.
     ///
-    /// A kD-tree is walked once for all of them, and of each triangle that is met there, the rays that may hit it are found at
-    /// once. Other structures, and shapes that are no triangles or smaller than pixels, are not asked so.
+    /// A tree is walked once for all of them, and of each triangle that is met there, the rays that may hit it are found at
+    /// once. Grids, and shapes that are no triangles or smaller than pixels, are not asked so.
     ///
     /// ```
     /// # use hitscan::{Arena, KdTree, Mesh, Scene, glam::Vec3, kdtree::Options};
@@ -91,6 +91,8 @@ impl<A: Accelerator, P: Primitives> Scene<A, P> {
     /// assert_eq!(hits.get(3, 5), scene.closest_hit(&pencil.ray(3, 5)));
     /// # Ok::<(), hitscan::Error>(())
     /// ```
+    // Not in the caller's frame, which is still there if the rays are then cast one by one.
+    #[inline(never)]
     pub fn closest_hits(&self, pencil: &Pencil, hits: &mut ItemBuffer) -> bool {
         let Some(bundle) = pencil.bundle() else { return false };
         *hits = ItemBuffer::new();

@@ -26,8 +26,12 @@ mod weight;
 pub use options::{Method, Options};
 pub use traverse::BvhTraversal;
 
-use self::node::{Link, PAIR_WORDS, Pair};
-use super::{Accelerator, Cell, Entries, Entry, Hierarchy, Inside, Leaf, leaf::References};
+use self::node::{Link, Node, PAIR_WORDS, Pair};
+use super::{
+    Accelerator, Cell, Entries, Entry, Hierarchy, Inside, Leaf,
+    beam::{Ahead, Beam, sweep},
+    leaf::References,
+};
 use crate::{
     arena::Arena,
     asset::{Asset, Stored},
@@ -177,6 +181,12 @@ impl<'a> Bvh<'a> {
         (steps, tests)
     }
 
+    /// When rays are in a box.
+    #[inline(always)]
+    fn beam(&self, node: &Node, bundle: &Bundle) -> Option<Beam> {
+        Beam::within(&node.planes.bounds(&self.lattice), node.link.to_bits(), bundle)
+    }
+
     /// Of a box: the planes on which nodes stand.
     fn lattice(bounds: &Aabb) -> Lattice {
         Lattice::over(bounds, [u32::from(u16::MAX); 3])
@@ -202,6 +212,29 @@ impl<'a> Accelerator for Bvh<'a> {
     /// Some entries: a look at a pair of boxes costs a ray more than an entry does.
     fn enter(&self, bundle: &Bundle) -> Entries {
         Entries::find(self, bundle, 4)
+    }
+
+    fn sweep(&self, bundle: &Bundle, mut visit: impl FnMut(Leaf<'a>) -> f32) -> bool {
+        let look = |beam: Beam| {
+            let link = Link::from_bits(beam.node);
+            if link.is_leaf() {
+                return Ahead::Primitives;
+            }
+            let Some(pair) = self.pairs.get(link.number() as usize) else { return Ahead::Nothing };
+            let [left, right] = pair.each_ref().map(|node| self.beam(node, bundle));
+            match (left, right) {
+                (Some(left), Some(right)) if left.enter > right.enter => Ahead::Two(right, left),
+                (Some(left), Some(right)) => Ahead::Two(left, right),
+                (Some(only), None) | (None, Some(only)) => Ahead::One(only),
+                (None, None) => Ahead::Nothing,
+            }
+        };
+        let whole = Beam::within(&self.bounds, self.root.to_bits(), bundle);
+        sweep::<MAX_DEPTH>(whole, look, |node| {
+            let link = Link::from_bits(node);
+            visit(Leaf::of(self.references, link.number(), link.count()))
+        });
+        true
     }
 
     #[inline]

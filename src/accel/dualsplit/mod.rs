@@ -27,7 +27,11 @@ use self::{
     node::{Head, Kind},
     open::{Form, Header},
 };
-use super::{Accelerator, Cell, Entries, Entry, Hierarchy, Inside, Leaf, leaf::References};
+use super::{
+    Accelerator, Cell, Entries, Entry, Hierarchy, Inside, Leaf,
+    beam::{Ahead, Beam, sweep},
+    leaf::References,
+};
 use crate::{
     arena::{Arena, Full},
     asset::{Asset, Stored},
@@ -211,6 +215,33 @@ impl<'a, const HEIGHT: usize> DualSplit<'a, HEIGHT> {
         self.depth
     }
 
+    /// What the rays of a bundle find in a cell.
+    #[inline(always)]
+    fn ahead(&self, beam: Beam, bundle: &Bundle) -> Ahead {
+        let Some(&word) = self.nodes.get(beam.node as usize) else { return Ahead::Nothing };
+        let Some(kind) = Head::from_word(word).kind() else { return Ahead::Nothing };
+        let planes = self.nodes.get(beam.node as usize + 1).copied().unwrap_or(0);
+        let [first, second] = [planes & Block::LAST, planes >> 16];
+        let next = beam.at(beam.node + 2);
+        let cut = |beam: Beam, Face { axis, upper }: Face, plane: u32| {
+            let plane = self.lattice.position(axis, plane);
+            if upper { beam.below(axis, plane, bundle) } else { beam.above(axis, plane, bundle) }
+        };
+        match kind {
+            Kind::Leaf { .. } => Ahead::Primitives,
+            Kind::Carve { faces: [face, other] } => {
+                let (rest, _) = cut(next, face, first);
+                let (rest, _) = cut(rest, other, second);
+                if rest.is_missed() { Ahead::Nothing } else { Ahead::One(rest) }
+            }
+            Kind::Split { axis, right } => {
+                let (left, _) = cut(next, Face { axis, upper: true }, first);
+                let (right, descends) = cut(beam.at(right), Face { axis, upper: false }, second);
+                if descends { Ahead::of(right, left) } else { Ahead::of(left, right) }
+            }
+        }
+    }
+
     /// A box cut by a plane, of which it keeps what lies before an upper face, or behind a lower one.
     fn cut(&self, bounds: Aabb, face: Face, plane: u32) -> Aabb {
         let Face { axis, upper } = face;
@@ -243,6 +274,19 @@ impl<'a, const HEIGHT: usize> Accelerator for DualSplit<'a, HEIGHT> {
     /// One entry: a second one costs each ray more than it spares.
     fn enter(&self, bundle: &Bundle) -> Entries {
         Entries::find(self, bundle, 1)
+    }
+
+    fn sweep(&self, bundle: &Bundle, mut visit: impl FnMut(Leaf<'a>) -> f32) -> bool {
+        let whole = Beam::within(&self.bounds, 0, bundle);
+        sweep::<HEIGHT>(
+            whole,
+            |beam| self.ahead(beam, bundle),
+            |node| {
+                let head = self.nodes.get(node as usize).map_or(Head::leaf(0, 0), |&word| Head::from_word(word));
+                visit(Leaf::of(self.references, head.first(), head.count()))
+            },
+        );
+        true
     }
 
     #[inline]

@@ -1,8 +1,10 @@
 use super::node::Side;
 use crate::{
-    accel::{Entries, Entry},
+    accel::{
+        Entries, Entry,
+        beam::{Ahead, Beam},
+    },
     geometry::{Aabb, Axis, Bundle},
-    math::{greatest, least},
 };
 
 /// What a node of a kD-tree says to all rays of a bundle.
@@ -30,34 +32,11 @@ impl Planes {
             Side::Right => bounds.split(self.axis, self.begin).1,
         }
     }
-
-    /// When rays that are in a cell from `enter` to `exit` are in its left and its right part, and whether they come to the
-    /// right one first.
-    #[inline(always)]
-    fn part(&self, bundle: &Bundle, enter: f32, exit: f32) -> ([(f32, f32); 2], bool) {
-        let begin = bundle.passage(self.axis, self.begin, enter);
-        let end = bundle.passage(self.axis, self.end, enter);
-        let parts = match (begin.descends, end.descends) {
-            (false, false) => [(enter, least(end.latest, exit)), (greatest(begin.earliest, enter), exit)],
-            (true, true) => [(greatest(end.earliest, enter), exit), (enter, least(begin.latest, exit))],
-            // They begin between the faces.
-            _ => [(enter, exit); 2],
-        };
-        (parts, begin.descends)
-    }
-}
-
-/// A node, and when rays of a bundle can be in its cell.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Beam {
-    pub(super) node: u32,
-    pub(super) enter: f32,
-    pub(super) exit: f32,
 }
 
 /// What a bundle finds at a node.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Found {
+enum Found {
     /// Primitives.
     Primitives,
     /// Nothing, or nothing that its rays meet.
@@ -76,8 +55,7 @@ const PATIENCE: u32 = 64;
 ///
 /// Where they are on both sides of a plane, and there is nothing for them on one, the cell is on the other.
 pub(super) fn entries(mut bounds: Aabb, bundle: &Bundle, open: impl Fn(u32) -> Option<Opened>) -> Entries {
-    let Some((enter, exit)) = bundle.interval(&bounds) else { return Entries::default() };
-    let mut at = Beam { node: 0, enter, exit };
+    let Some(mut at) = Beam::within(&bounds, 0, bundle) else { return Entries::default() };
     loop {
         let (next, planes, side) = match look(bundle, at, &open) {
             Found::Nothing => return Entries::default(),
@@ -122,24 +100,34 @@ fn is_empty(bundle: &Bundle, at: Beam, open: impl Fn(u32) -> Option<Opened>) -> 
     false
 }
 
-/// One step of all rays at once: the intervals of a walk, with the earliest entry and the latest exit of any ray.
+/// One step of all rays at once.
 #[inline(always)]
-pub(super) fn look(bundle: &Bundle, Beam { node, enter, exit }: Beam, open: impl Fn(u32) -> Option<Opened>) -> Found {
-    let (planes, left, right, empty) = match open(node) {
+fn look(bundle: &Bundle, beam: Beam, open: impl Fn(u32) -> Option<Opened>) -> Found {
+    let (planes, left, right, empty) = match open(beam.node) {
         Some(Opened::Parted { planes, left, right, empty }) => (planes, left, right, empty),
         Some(Opened::Leaf { is_empty: false }) => return Found::Primitives,
         _ => return Found::Nothing,
     };
-    let ([below, above], descends) = planes.part(bundle, enter, exit);
-    // Written so that NaN visits.
-    let without_left = empty == Some(Side::Left) || below.0 > below.1;
-    let without_right = empty == Some(Side::Right) || above.0 > above.1;
-    let left = Beam { node: left, enter: below.0, exit: below.1 };
-    let right = Beam { node: right, enter: above.0, exit: above.1 };
+    let (left, _) = beam.at(left).below(planes.axis, planes.end, bundle);
+    let (right, descends) = beam.at(right).above(planes.axis, planes.begin, bundle);
+    let without_left = empty == Some(Side::Left) || left.is_missed();
+    let without_right = empty == Some(Side::Right) || right.is_missed();
     match (without_left, without_right) {
         (true, true) => Found::Nothing,
         (true, false) => Found::Half(right, planes, Side::Right),
         (false, true) => Found::Half(left, planes, Side::Left),
         (false, false) => Found::Halves { halves: [left, right], planes, descends },
+    }
+}
+
+/// The same in the order of the rays.
+#[inline(always)]
+pub(super) fn ahead(bundle: &Bundle, beam: Beam, open: impl Fn(u32) -> Option<Opened>) -> Ahead {
+    match look(bundle, beam, open) {
+        Found::Primitives => Ahead::Primitives,
+        Found::Nothing => Ahead::Nothing,
+        Found::Half(half, ..) => Ahead::One(half),
+        Found::Halves { halves: [left, right], descends: false, .. } => Ahead::Two(left, right),
+        Found::Halves { halves: [left, right], descends: true, .. } => Ahead::Two(right, left),
     }
 }

@@ -14,7 +14,6 @@ mod options;
 mod pack;
 mod split;
 mod stage;
-mod sweep;
 mod traverse;
 
 pub use compact::{CompactKdTraversal, CompactKdTree};
@@ -25,9 +24,12 @@ use self::{
     enter::{Opened, Planes},
     form::Form,
     node::{Kind, Node, Side},
-    sweep::sweep,
 };
-use super::{Accelerator, Cell, Entries, Entry, Hierarchy, Inside, Leaf, leaf::References};
+use super::{
+    Accelerator, Cell, Entries, Entry, Hierarchy, Inside, Leaf,
+    beam::{Beam, sweep},
+    leaf::References,
+};
 use crate::{
     arena::Arena,
     asset::{Asset, Stored},
@@ -230,7 +232,8 @@ impl<'a, const HEIGHT: usize> Accelerator for KdTree<'a, HEIGHT> {
             Some(Kind::Leaf { first, count }) => visit(Leaf::of(self.references, first, count)),
             _ => f32::NEG_INFINITY,
         };
-        sweep::<HEIGHT>(&self.bounds, bundle, |node| self.opened(node), visit);
+        let whole = Beam::within(&self.bounds, 0, bundle);
+        sweep::<HEIGHT>(whole, |beam| enter::ahead(bundle, beam, |node| self.opened(node)), visit);
         true
     }
 

@@ -23,12 +23,15 @@ pub use options::{Options, Split};
 pub use traverse::OctreeTraversal;
 
 use self::node::{Node, Point};
-use super::{Accelerator, Cell, Hierarchy, Inside, MAX_LEVELS};
+use super::{
+    Accelerator, Cell, Hierarchy, Inside, Leaf, MAX_LEVELS,
+    beam::{Beam, sweep},
+};
 use crate::{
     arena::Arena,
     asset::{Asset, Stored},
     error::{BuildError, Error},
-    geometry::{Aabb, PreparedRay},
+    geometry::{Aabb, Bundle, PreparedRay},
     primitives::Primitives,
 };
 
@@ -207,6 +210,19 @@ impl<'a> Accelerator for Octree<'a> {
     #[inline]
     fn traverse(&self, ray: &PreparedRay) -> OctreeTraversal<'a> {
         OctreeTraversal::new(self, ray)
+    }
+
+    fn sweep(&self, bundle: &Bundle, mut visit: impl FnMut(Leaf<'a>) -> f32) -> bool {
+        let whole = self.whole(0).and_then(|whole| Beam::within(&self.bounds, whole.to_bits(), bundle));
+        sweep::<{ 3 * MAX_DEPTH }>(
+            whole,
+            |beam| self.ahead(beam, bundle),
+            |bits| {
+                let node = self.node(Octants::from_bits(bits).word);
+                node.map_or(f32::NEG_INFINITY, |node| visit(node.leaf_in(self.body, self.is_wide())))
+            },
+        );
+        true
     }
 }
 

@@ -21,10 +21,13 @@ use super::{
     MAX_DEPTH, Options, Side, build,
     enter::{self, Opened, Planes},
     form::Form,
-    sweep::sweep,
 };
 use crate::{
-    accel::{Accelerator, Cell, Entries, Entry, Hierarchy, Inside, Leaf, leaf::References},
+    accel::{
+        Accelerator, Cell, Entries, Entry, Hierarchy, Inside, Leaf,
+        beam::{Beam, sweep},
+        leaf::References,
+    },
     arena::Arena,
     asset::{Asset, Stored},
     error::{BuildError, Error},
@@ -173,7 +176,8 @@ impl<'a, const HEIGHT: usize> Accelerator for CompactKdTree<'a, HEIGHT> {
             Some(Kind::Leaf { first, count, .. }) => visit(Leaf::of(self.references, first, count)),
             _ => f32::NEG_INFINITY,
         };
-        sweep::<HEIGHT>(&self.bounds, bundle, |node| self.opened(node), visit);
+        let whole = Beam::within(&self.bounds, 0, bundle);
+        sweep::<HEIGHT>(whole, |beam| enter::ahead(bundle, beam, |node| self.opened(node)), visit);
         true
     }
 
