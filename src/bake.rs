@@ -1,4 +1,21 @@
 //! Baking (feature `alloc`): structures and assets made on a host, for anywhere.
+//!
+//! By `hitscan bake`, or in the `build.rs` of a firmware, with hitscan among its build dependencies:
+//!
+//! ```no_run
+//! use hitscan::{Mesh, accel::{Plan, Structure}, bake::{self, Baker}, glam::Vec3, kdtree::Options};
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let (vertices, triangles) = ([Vec3::ZERO, Vec3::X, Vec3::Y], [[0_u16, 1, 2]]);
+//! let mesh = Mesh::new(&vertices, &triangles)?;
+//! let plan = Plan::KdTree(Options::balanced().fit(64 * 1024));
+//! let words = bake::build(&mesh, &plan)?;
+//! let asset = Baker::new().mesh(&mesh).structure(Structure::open(plan.kind().unwrap(), &words)?).finish();
+//! let file = std::path::Path::new(&std::env::var("OUT_DIR")?).join("scene.hits");
+//! std::fs::write(file, asset.into_iter().flat_map(u32::to_le_bytes).collect::<Vec<_>>())?;
+//! # Ok(()) }
+//! ```
+//!
+//! The firmware includes it by `include_asset!(concat!(env!("OUT_DIR"), "/scene.hits"))`.
 
 mod lattice;
 mod meshlets;

@@ -38,7 +38,7 @@ impl core::error::Error for LatticeError {}
 
 /// A structure and the triangles on a lattice that it was built over, asked in whole numbers.
 ///
-/// The same queries as of a [`Scene`](crate::Scene), for chips that have no FPU: four to ten times as fast there. Its
+/// Closest and any hits, as of a [`Scene`](crate::Scene), for chips that have no FPU: four to ten times as fast there. Its
 /// answers are its own. A ray is rounded to the lattice, corners are rounded as the ray sees them, and `t` is as exact as
 /// the lattice is, so hits near edges and `t` differ from a [`Scene`](crate::Scene)'s by about a step of the lattice. But
 /// they are exact in the same sense: bit for bit those of a list, whatever the structure, on every target; and no ray passes

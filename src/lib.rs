@@ -59,13 +59,15 @@
 //! | [`List`] | 0 | up to eight primitives, and as the oracle of all others |
 //! | [`DualSplit`] | 5, in order | the least flash |
 //! | [`Bvh`] | 11, in order | moving geometry ([`Bvh::refit`]), shapes of your own |
-//! | [`Grid`] | 13 | the quickest to build |
+//! | [`Grid`] | 13 | the quickest to build; where triangles lie evenly, the fastest rays on chips |
 //! | [`CompactKdTree`] | 18; 11 with `small` | a kD-tree in two thirds of the bytes |
 //! | [`Octree`] | 23 | few, wide nodes |
-//! | [`KdTree`] | 27 | the fastest rays |
+//! | [`KdTree`] | 27 | fast rays over any scene |
 //!
 //! BVH and dual-split tree need no list of numbers if the primitives stand *in order*: that of their leaves
 //! ([`Bvh::ordered`], [`primitives::Reordered`]). [`Instances`] place scenes many times, at any depth.
+//! [`LatticeScene`] answers in whole numbers, for chips without an FPU; [`Soup`](primitives::Soup) and
+//! [`Meshlets`](primitives::Meshlets) trade bytes of triangles for speed, or speed for bytes.
 //! [`accel::Mailbox`], [`accel::Bounded`] and [`accel::Counted`] go around any structure; [`accel::Structure`] is any of them.
 //!
 //! # Example: the nearest point
@@ -110,8 +112,7 @@
 //! # Why, and why not
 //!
 //! No other crate answers triangle ray queries without heap and from flash, and none promises the same bits from every
-//! structure. If you need neither and have a desktop, an SIMD engine on full-size nodes is faster: see the table in the
-//! README. There are no curves, no motion blur and no path tracing here, and **no** `f64` scenes.
+//! structure. On a desktop use `wide::WideBvh` (feature `std`), which takes eight boxes at a time. There are no curves, no motion blur and no path tracing here, and **no** `f64` scenes.
 //!
 //! Outside the promises: targets that flush denormals to zero, and bounds of your own shapes that do not contain them.
 //!
@@ -122,7 +123,7 @@
 //! | feature | adds |
 //! |---|---|
 //! | `alloc` | `bake`: assets from structures |
-//! | `std` | `alloc`, and `parallel`: all cores |
+//! | `std` | `alloc`, `parallel`: all cores, and `wide`: SIMD |
 //! | `graphics` | `display`: `embedded_graphics` targets |
 //! | `defmt` | `defmt::Format` for errors and small types |
 //!

@@ -223,7 +223,8 @@ impl<A: Accelerator, P: Primitives> Scene<A, P> {
         Hits::new(self, ray)
     }
 
-    /// Replaces the contents of `hits` by the first hits of the ray, in order, as many as its capacity holds.
+    /// Replaces the contents of `hits` by the first hits of the ray, in order, as many as its capacity holds:
+    /// any `heapless::Vec`, of heapless 0.9.
     ///
     /// ```
     /// # use hitscan::{List, Mesh, Ray, Scene, glam::Vec3};

@@ -368,6 +368,20 @@ fn structured_lies_are_refused() {
     assert!(matches!(read, Err(Error::Asset(AssetError::NoStructure))));
 }
 
+/// What was expected is what the header says, or a header.
+#[test]
+fn cut_bytes_are_missed_and_spare_ones_noticed() {
+    let words = baked(1, 4, &Options::small());
+    let mut memory = vec![0_u32; words.len() + 1];
+    memory[..words.len()].copy_from_slice(&words);
+    let (bytes, whole): (&[u8], usize) = (bytemuck::cast_slice(&memory), words.len() * 4);
+    for found in 0..whole + 4 {
+        let expected = if found < 24 { 24 } else { whole };
+        let opened = Asset::open(&bytes[..found]).map(|_| ());
+        assert_eq!(opened, if found == whole { Ok(()) } else { Err(AssetError::Length { expected, found }) });
+    }
+}
+
 #[test]
 fn bytes_at_odd_addresses_are_refused() {
     let words = baked(1, 4, &Options::small());

@@ -97,11 +97,18 @@ impl<'a> Asset<'a> {
     ///
     /// [`AssetError`]; no bytes make it panic.
     pub fn open(bytes: &'a [u8]) -> Result<Self, AssetError> {
-        if !bytes.len().is_multiple_of(4) {
-            return Err(AssetError::Length { expected: bytes.len() / 4 * 4, found: bytes.len() });
+        let (found, least) = (bytes.len(), HEADER_WORDS * 4);
+        if found < least {
+            return Err(AssetError::Length { expected: least, found });
         }
+        let (whole, rest) = bytes.split_at(found - found % 4);
         // The length fits, so only the address can be wrong.
-        Self::from_words(bytemuck::try_cast_slice(bytes).map_err(|_| AssetError::Misaligned)?)
+        let asset = Self::from_words(bytemuck::try_cast_slice(whole).map_err(|_| AssetError::Misaligned)?);
+        match asset {
+            Ok(_) if !rest.is_empty() => Err(AssetError::Length { expected: whole.len(), found }),
+            Err(AssetError::Length { expected, .. }) => Err(AssetError::Length { expected, found }),
+            asset => asset,
+        }
     }
 
     /// The asset in `words`.
@@ -192,6 +199,29 @@ impl<'a> Asset<'a> {
     }
 
     /// The assets that are parts of it, in order: scenes to be placed.
+    ///
+    /// ```
+    /// use hitscan::{Bvh, Error, Instance, Instances, KdTree, Mesh, Ray, Scene};
+    /// use hitscan::{accel::Plan, asset::Asset, bake::{self, Baker}, bvh, geometry::Transform, glam::{Mat3, Vec3}, kdtree};
+    /// // On a host, or by `hitscan bake world.toml`: one triangle, placed twice.
+    /// let mesh = Mesh::new(&[Vec3::ZERO, Vec3::X, Vec3::Y], &[[0_u16, 1, 2]])?;
+    /// let words = bake::build(&mesh, &Plan::KdTree(kdtree::Options::balanced()))?;
+    /// let scenes = [Scene::new(KdTree::open(&words)?, mesh)?];
+    /// let there = Transform::new(Mat3::IDENTITY, Vec3::X * 5.0).unwrap();
+    /// let mut placed = [Transform::IDENTITY, there].map(|transform| Instance::new(0, transform));
+    /// let world = Instances::place(&scenes, &mut placed)?;
+    /// let above = bake::build(&world, &Plan::Bvh(bvh::Options::balanced()))?;
+    /// let part = Baker::new().mesh(&mesh).structure(KdTree::open(&words)?);
+    /// let baked = Baker::new().part(part).structure(Bvh::open(&above)?).instances(&placed).finish();
+    ///
+    /// // Wherever the asset lies; where there is no heap, the scenes go into an array or a `heapless::Vec`.
+    /// let asset = Asset::from_words(&baked)?;
+    /// let scenes = asset.parts().map(|part| part?.scene::<KdTree, Mesh>()).collect::<Result<Vec<_>, Error>>()?;
+    /// let world = Instances::new(&scenes, asset.read::<&[Instance]>()?)?;
+    /// let scene = Scene::new(asset.read::<Bvh>()?, &world)?;
+    /// assert!(scene.any_hit(&Ray::new(Vec3::new(5.2, 0.2, -1.0), Vec3::Z)));
+    /// # Ok::<(), Error>(())
+    /// ```
     pub fn parts(&self) -> impl Iterator<Item = Result<Self, AssetError>> + use<'a> {
         self.sections().filter(|section| section.kind == Kind::Part).map(|section| Self::from_words(section.words))
     }

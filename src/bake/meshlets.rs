@@ -55,7 +55,7 @@ const REACH: usize = 1 << 8;
 
 /// Puts vertices into the order in which triangles name them, so that three bytes are enough for a triangle's corners.
 ///
-/// A vertex stands there several times if triangles name it that are far apart. That changes no answer and costs a seventh of
+/// A vertex stands there several times if triangles name it that are far apart. That changes no answer and costs about a sixth of
 /// the vertices at most where triangles that follow one another are neighbours, as they are in the order of the leaves of a
 /// [`Bvh`](crate::Bvh). Where they are not, other indices take fewer bytes.
 ///

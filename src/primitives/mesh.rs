@@ -89,7 +89,7 @@ impl fmt::Display for MeshError {
 
 impl core::error::Error for MeshError {}
 
-/// Triangles over borrowed vertices: 16 bytes of view, whatever the mesh.
+/// Triangles over borrowed vertices: a view of some words, whatever the mesh.
 ///
 /// Checked once when made: every index names a vertex and every vertex used is finite. Triangles without area are
 /// allowed and never hit.
@@ -175,7 +175,7 @@ impl Primitives for Mesh<'_> {
         self.faces.len()
     }
 
-    #[inline]
+    #[inline(always)]
     fn bounds(&self, index: u32) -> Aabb {
         self.triangle(index).bounds()
     }

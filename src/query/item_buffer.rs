@@ -71,7 +71,7 @@ impl Default for ItemBuffer {
 
 impl<A: Accelerator, P: Primitives> Scene<A, P> {
     /// The first hits of all rays of a pencil, each that of [`closest_hit`](Self::closest_hit); false if they are to be asked
-    /// for one by one.
+    /// for one by one, and what is in `hits` then means nothing.
     ///
     /// A tree is walked once for all of them, and of each triangle that is met there, the rays that may hit it are found at
     /// once. Grids, and shapes that are no triangles or smaller than pixels, are not asked so.

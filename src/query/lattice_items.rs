@@ -12,7 +12,7 @@ const PATIENCE: u32 = 256;
 
 impl<A: LatticeAccelerator, P: LatticeTriangles> LatticeScene<A, P> {
     /// The first hits of all rays of a pencil, each that of [`closest_hit`](Self::closest_hit); false if they are to be asked
-    /// for one by one.
+    /// for one by one, and what is in `hits` then means nothing.
     ///
     /// The structure is walked once for all of them, and of each triangle that is met there, the rays that may hit it are found at
     /// once, all in whole numbers. Where triangles are much smaller than pixels, or the rays have not one major axis, it is not.

@@ -60,6 +60,7 @@ impl Along {
                 let (mut line, _) = Crossings::of(spacing, view);
                 number = line.skip(spacing, axis.of(ray.ray().direction), from);
                 *next = line.next;
+                // It would be taken for one that crosses nothing.
                 is_close |= !(line.next.abs() < f32::INFINITY);
             } else {
                 match Place::of(spacing, (lattice, axis), view, (from, to)) {

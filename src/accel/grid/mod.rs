@@ -77,7 +77,7 @@ impl<'a> Grid<'a> {
     ///
     /// [`BuildError::Full`] if the arena is too small, [`BuildError::Bounds`] if a primitive has no valid bounds,
     /// [`BuildError::Budget`] if not even a single cell fits into [`Options::max_bytes`], [`BuildError::TooMany`] above
-    /// 2^28 primitives, or 2^24 with [`Form::Octants`]. The arena is then as it was.
+    /// 2^28 primitives, or from 2^24 on with [`Form::Octants`]. The arena is then as it was.
     pub fn build<P: Primitives + ?Sized>(
         primitives: &P,
         arena: &mut Arena<'a>,

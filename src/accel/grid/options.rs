@@ -2,7 +2,7 @@
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Form {
-    /// An offset per cell, 2 bytes, or 4 above 65,535 references, and 4 bytes a reference, or 6 above 16,384 primitives, where
+    /// An offset per cell, 2 bytes, or 4 above 65,535 references, and 4 bytes a reference, or 6 above 2^14 primitives, 8 above 2^21, where
     /// other forms have little more than 2: needs no memory beside the grid to be built in.
     Full,
     /// A word per cell, an offset and which octants hold anything: a third less work for queries that do not pause. For less

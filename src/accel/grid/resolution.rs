@@ -22,7 +22,7 @@ pub(super) fn resolution(bounds: &Aabb, cells: u32) -> [u32; 3] {
     let middle = greatest(least(x, y), least(greatest(x, y), z));
     let count = cells as f32;
     // How many cubes stand along the largest side.
-    let along = if count * low * low >= middle {
+    let along = if low > 0.0 && count * low * low >= middle {
         math::pow(count / (low * middle), 1.0 / 3.0)
     } else if count * middle >= 1.0 {
         math::sqrt(count / middle)

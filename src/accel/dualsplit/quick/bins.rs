@@ -108,7 +108,7 @@ impl Sums<'_> {
 
     /// The cheapest way to divide them within `implied` into two parts of at most `most`, if there is one.
     pub(super) fn cut(&self, implied: &Block, metric: &Metric, lattice: &Lattice, most: u32) -> Option<Cut> {
-        let mut best: Option<Cut> = None;
+        let mut best = Cut { axis: Axis::X, border: 0, left: 0, planes: (0.0, 0.0), work: f32::INFINITY };
         for (axis, (bins, from_bin)) in Axis::ALL.into_iter().zip(self.spread.0.iter().zip(&self.from)) {
             let (from, to) = (lattice.position(axis, implied.min(axis)), lattice.position(axis, implied.max(axis)));
             // Half the surface of a part of this length.
@@ -130,14 +130,13 @@ impl Sums<'_> {
                 let left = (across + along * (before.max - from)) * before.count as i32 as f32;
                 let right = (across + along * (to - behind.min)) * behind.count as i32 as f32;
                 let work = left + right;
-                if best.is_none_or(|best| work < best.work) {
-                    let planes = (before.max, behind.min);
-                    best = Some(Cut { axis, border, left: before.count, planes, work });
+                if work < best.work {
+                    best = Cut { axis, border, left: before.count, planes: (before.max, behind.min), work };
                 }
             }
         }
-        let whole = metric.half_area(implied);
-        best.map(|best| Cut { work: best.work / whole, ..best })
+        let work = best.work / metric.half_area(implied);
+        (best.left > 0).then_some(Cut { work, ..best })
     }
 }
 
