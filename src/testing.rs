@@ -1,5 +1,18 @@
 //! Numbers for unit tests.
 
+/// How many times less is tried under Miri, where all takes as much longer.
+const PATIENCE: u32 = 200;
+
+/// So many cases, or a part of them.
+pub(crate) const fn cases(count: u32) -> u32 {
+    if cfg!(miri) { count / PATIENCE } else { count }
+}
+
+/// The step that leaves so many.
+pub(crate) const fn every(step: usize) -> usize {
+    if cfg!(miri) { step * PATIENCE as usize } else { step }
+}
+
 /// A small generator of reproducible numbers (xorshift64*, Vigna 2016).
 pub(crate) struct Random(u64);
 

@@ -125,7 +125,7 @@ mod tests {
     use glam::Vec3;
 
     use super::*;
-    use crate::testing::Random;
+    use crate::testing::{Random, cases};
 
     #[test]
     fn boxes_rounded_outward_contain_what_they_contained() {
@@ -145,7 +145,7 @@ mod tests {
             for last in [1, 7, 1000, 65_535, Lattice::MAX] {
                 let lattice = Lattice::over(&bounds, [last; 3]);
                 assert!(lattice.position(Axis::X, 0) <= min && lattice.position(Axis::Z, last) >= max);
-                for _ in 0..200 {
+                for _ in 0..cases(200) {
                     let x = (min + size * random.unit()).clamp(min, max);
                     let (below, above) = (lattice.below(Axis::Y, x), lattice.above(Axis::Y, x));
                     let at = |number| lattice.position(Axis::Y, number);

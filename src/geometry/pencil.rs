@@ -268,6 +268,7 @@ impl Edges {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::testing::cases;
 
     /// Triangles some pixels large, in front of an eye, turned in all ways.
     #[test]
@@ -280,7 +281,7 @@ mod tests {
             ((state >> 8) as f32 / 8_388_608.0 - 1.0) * size
         };
         let (mut hits, mut candidates) = (0, 0);
-        for _ in 0..20_000 {
+        for _ in 0..cases(20_000) {
             let middle = pencil.ray(4, 4).at(5.0) + Vec3::new(random(0.06), random(0.06), random(1.0));
             let mut corner = || middle + Vec3::new(random(0.08), random(0.08), random(0.08));
             let triangle = Triangle::new(corner(), corner(), corner());
@@ -295,7 +296,7 @@ mod tests {
                 }
             }
         }
-        assert!(hits > 50_000 && candidates < hits + hits / 20, "{hits} {candidates}");
+        assert!(hits > cases(50_000) && candidates < hits + hits / 20, "{hits} {candidates}");
     }
 
     /// Products of such lengths are rounded to whole denormal numbers.
@@ -309,7 +310,7 @@ mod tests {
             ((state >> 8) % steps) as f32 - 0.5 * (steps - 1) as f32
         };
         let mut hits = 0;
-        for _ in 0..100_000 {
+        for _ in 0..cases(100_000) {
             let mut corner = || Vec3::new(random(16), random(16), random(16)) * 2.0e-23;
             let triangle = Triangle::new(corner(), corner(), corner());
             let rays = pencil.candidates(&triangle);
@@ -321,7 +322,7 @@ mod tests {
                 }
             }
         }
-        assert!(hits > 10_000, "{hits}");
+        assert!(hits > cases(10_000), "{hits}");
     }
 
     #[test]

@@ -83,7 +83,7 @@ mod tests {
     use std::vec::Vec;
 
     use super::*;
-    use crate::render::color::encode;
+    use crate::{render::color::encode, testing::every};
 
     #[test]
     fn levels_are_those_that_the_nearest_colour_has() {
@@ -97,7 +97,7 @@ mod tests {
     #[test]
     fn light_is_between_the_levels_around_it() {
         for levels in [Levels::BITS_1, Levels::BITS_5, Levels::BITS_8] {
-            for light in 0..ONE {
+            for light in (0..ONE).step_by(every(1)) {
                 let [(level, below), (next, above)] = levels.around(light);
                 assert!(below <= light && light < above && next == level + 1);
                 assert_eq!(levels.around(below)[0].0, level);

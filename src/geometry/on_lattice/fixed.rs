@@ -96,6 +96,7 @@ pub(super) const fn reciprocal(x: i32) -> i32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::testing::every;
 
     /// 2 to the power of `exponent`, exactly.
     fn power(exponent: i32) -> f64 {
@@ -129,7 +130,7 @@ mod tests {
 
     #[test]
     fn reciprocals_have_28_bits() {
-        for x in (1 << 30..=i32::MAX as u32).step_by(3331) {
+        for x in (1 << 30..=i32::MAX as u32).step_by(every(3331)) {
             let exact = power(61) / f64::from(x);
             assert!((f64::from(reciprocal(x as i32)) - exact).abs() < exact * power(-28), "{x}");
         }

@@ -85,7 +85,7 @@ pub(super) fn offset(triangle: &Triangle, point: Vec3) -> (V, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::Random;
+    use crate::testing::{Random, cases};
 
     fn closest(corners: [[f32; 3]; 3], point: [f32; 3]) -> [f32; 3] {
         let [a, b, c] = corners.map(Vec3::from_array);
@@ -151,7 +151,7 @@ mod tests {
     #[test]
     fn no_sample_of_the_triangle_is_closer() {
         let mut random = Random::new(3);
-        for round in 0..4000 {
+        for round in 0..cases(4000) as usize {
             let thin = [1.0, 1.0e-3, 1.0e-5, 1.0e-7, 0.0][round % 5];
             let mut corner = || Vec3::new(random.unit(), random.unit() * thin, random.unit() * thin * 0.7);
             let triangle = Triangle::new(corner(), corner(), corner());

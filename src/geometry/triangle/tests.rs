@@ -1,7 +1,10 @@
 //! The tiers against each other: whatever a fast one answers, the exact one must answer too.
 
 use super::*;
-use crate::{geometry::Ray, testing::Random};
+use crate::{
+    geometry::Ray,
+    testing::{Random, cases},
+};
 
 /// The exact answer alone.
 fn exactly(triangle: &Triangle, ray: &PreparedRay) -> Option<Crossing> {
@@ -33,7 +36,7 @@ fn coordinate(random: &mut Random, family: u32) -> f32 {
 fn every_tier_answers_as_the_exact_one() {
     let mut random = Random::new(7);
     let (mut hits, mut slow) = (0, 0);
-    for _ in 0..100_000 {
+    for _ in 0..cases(100_000) {
         let family = random.below(11);
         let mut point = || {
             let [x, y, z] = [0; 3].map(|_| coordinate(&mut random, family));
@@ -59,7 +62,7 @@ fn every_tier_answers_as_the_exact_one() {
             slow += u32::from(got.t == exact.t);
         }
     }
-    assert!(hits > 10_000 && slow > 1_000, "{hits} {slow}");
+    assert!(hits > cases(10_000) && slow > cases(1_000), "{hits} {slow}");
 }
 
 #[test]
