@@ -23,6 +23,14 @@ pub enum Failure {
     /// Two structures answer the same rays differently: what this program promises not to happen.
     #[error("{0}: the answers should be equal bit for bit, please report this with the mesh and the rays")]
     Disagreement(String),
+    /// A structure that may have so many bytes needs more.
+    #[error("a structure that may take {allowed} bytes needs {least}: allow more bytes, or simplify the mesh")]
+    Crowded {
+        /// What it may take.
+        allowed: usize,
+        /// What it takes at least.
+        least: usize,
+    },
     /// Anything else.
     #[error("{what}: {mend}")]
     Other {

@@ -13,7 +13,7 @@ use crate::output::{OutputError, write_atomically};
 pub struct HitRecord {
     /// Where on the ray, in lengths of its direction.
     pub t: f32,
-    /// The triangle, counted from 0 in the mesh file's order.
+    /// The triangle, counted from 0 in the order of the file, which is an asset's own unless that keeps its model's numbers.
     pub primitive: u32,
 }
 

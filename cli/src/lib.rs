@@ -81,9 +81,10 @@ fn refuse(error: &clap::Error) -> ExitCode {
     ExitCode::from(2)
 }
 
-/// The words of an error of clap's, without the usage that follows them.
+/// The words of an error of clap's, without the tips and the usage that follow them.
 fn one_line(text: &str) -> String {
     let complaint = text.lines().take_while(|line| !line.starts_with("Usage:") && !line.starts_with("For more"));
+    let complaint = complaint.filter(|line| !line.trim_start().starts_with("tip:"));
     let words: Vec<&str> = complaint.flat_map(str::split_whitespace).skip_while(|word| *word == "error:").collect();
     words.join(" ")
 }

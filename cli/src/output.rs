@@ -5,7 +5,7 @@ use std::fs::{self, File, Permissions};
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
-use crate::interrupt;
+use crate::{failure::Failure, interrupt};
 
 /// Why an output could not be written, printed as `PATH: WHAT: HOW TO MEND IT`.
 #[derive(Debug)]
@@ -51,6 +51,23 @@ pub fn check(path: &Path) -> Result<(), OutputError> {
         Ok(_) => Ok(()),
     };
     outcome.map_err(|error| OutputError { path: path.to_owned(), error })
+}
+
+/// Refuses a path, given with `option`, that is one of the inputs of the same command: a slip would cost that file.
+///
+/// Devices can be both, and another name of the same bytes keeps them.
+pub fn spare<'a>(option: &str, output: &Path, inputs: impl IntoIterator<Item = &'a Path>) -> Result<(), Failure> {
+    let file = |path: &Path| match path == Path::new("-") {
+        true => None,
+        false => fs::canonicalize(path).ok().filter(|path| path.is_file()),
+    };
+    let Some(target) = file(output) else { return Ok(()) };
+    match inputs.into_iter().any(|input| file(input).as_ref() == Some(&target)) {
+        true => {
+            Err(Failure::new(format!("{}: is read and written", output.display()), format!("give another {option}")))
+        }
+        false => Ok(()),
+    }
 }
 
 /// Writes a file through `write`, or standard output for `-`.

@@ -59,19 +59,30 @@ pub struct Image {
 }
 
 /// Reads a PNG of 8-bit RGB pixels.
-pub fn read_png(file: impl io::BufRead + io::Seek) -> Result<Image, png::DecodingError> {
-    let mut reader = png::Decoder::new(file).read_info()?;
-    let other = || png::DecodingError::IoError(io::Error::other("its pixels are not 8-bit RGB"));
+pub fn read_png(file: impl io::BufRead + io::Seek) -> Result<Image, String> {
+    let mut reader = png::Decoder::new(file).read_info().map_err(explain)?;
+    let other = || "its pixels are not 8-bit RGB".to_owned();
     let size = reader.output_buffer_size().ok_or_else(other)?;
     let mut bytes = vec![0; size];
-    let frame = reader.next_frame(&mut bytes)?;
+    let frame = reader.next_frame(&mut bytes).map_err(explain)?;
     if (frame.color_type, frame.bit_depth) != (png::ColorType::Rgb, png::BitDepth::Eight) {
         return Err(other());
     }
-    reader.finish()?;
+    reader.finish().map_err(explain)?;
     let texts = reader.info().uncompressed_latin1_text.iter();
     let texts = texts.map(|chunk| (chunk.keyword.clone(), chunk.text.clone())).collect();
     Ok(Image { width: frame.width, height: frame.height, pixels: bytes.as_chunks().0.to_vec(), texts })
+}
+
+/// What is wrong with the bytes.
+fn explain(error: png::DecodingError) -> String {
+    match error {
+        png::DecodingError::IoError(error) if error.kind() == io::ErrorKind::UnexpectedEof => {
+            "it ends too early".to_owned()
+        }
+        png::DecodingError::IoError(error) => error.to_string(),
+        _ => "it is no PNG, or a damaged one".to_owned(),
+    }
 }
 
 /// Draws `pixels` with half blocks of 24-bit colour, two pixels to a character, shrunk to `columns`

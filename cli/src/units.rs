@@ -81,6 +81,18 @@ pub fn count(number: impl TryInto<u64>) -> String {
     text
 }
 
+/// So many things: `1 triangle`, `1,234 triangles`.
+pub fn things(number: impl TryInto<u64>, one: &str, many: &str) -> String {
+    let number = count(number);
+    let what = if number == "1" { one } else { many };
+    format!("{number} {what}")
+}
+
+/// A figure of which the hundreds count: `1,200`.
+pub fn hundreds(figure: f64) -> String {
+    count((figure / 100.0).round() as u64 * 100)
+}
+
 /// A time with three digits that count: `1.23 s`, `45.6 ms`.
 pub fn seconds(seconds: f64) -> String {
     match seconds {
@@ -129,6 +141,8 @@ mod tests {
     #[test]
     fn numbers_are_readable() {
         assert_eq!([0_u64, 999, 1000, 1_234_567].map(count), ["0", "999", "1,000", "1,234,567"]);
+        assert_eq!([0_u8, 1, 2].map(|n| things(n, "ray", "rays")), ["0 rays", "1 ray", "2 rays"]);
+        assert_eq!([49.0, 885.0, 15_572.0].map(hundreds), ["0", "900", "15,600"]);
         let texts = [0.000_012, 0.001_234, 0.0125, 0.5, 1.234, 12.34, 250.0].map(seconds);
         assert_eq!(texts, ["12 µs", "1.23 ms", "12.5 ms", "500 ms", "1.23 s", "12.3 s", "250 s"]);
     }

@@ -43,8 +43,5 @@ pub fn choose<P: Primitives + Sync>(
             best = Some((prediction.typical, built.because(prediction.to_string())));
         }
     }
-    best.map(|(_, built)| built).ok_or_else(|| {
-        let what = format!("no structure is within {} bytes; the smallest takes {least}", most.unwrap_or_default());
-        Failure::new(what, "allow more bytes, or simplify the mesh")
-    })
+    best.map(|(_, built)| built).ok_or(Failure::Crowded { allowed: most.unwrap_or_default(), least })
 }

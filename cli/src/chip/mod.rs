@@ -44,8 +44,20 @@ impl Chip {
         }
     }
 
+    /// Whether floating point is an instruction there, and not a call of many.
+    pub const fn has_fpu(self) -> bool {
+        matches!(self, Self::M4 | Self::M7 | Self::M33 | Self::Rv32imafc)
+    }
+
+    /// Its title with an article.
+    pub fn phrase(self) -> String {
+        let title = self.title();
+        let article = if title.starts_with('R') { "an" } else { "a" };
+        format!("{article} {title}")
+    }
+
     /// What it is called.
-    pub const fn title(self) -> &'static str {
+    const fn title(self) -> &'static str {
         match self {
             Self::M0 => "Cortex-M0",
             Self::M3 => "Cortex-M3",

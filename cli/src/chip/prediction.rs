@@ -7,7 +7,7 @@ use crate::{
     failure::Failure,
     scene::{Built, Shape},
     trial::{Counts, Rays, Work, scene},
-    units::count,
+    units::{count, hundreds},
 };
 
 /// What a scene will cost on a chip.
@@ -59,7 +59,6 @@ impl Prediction {
     /// Flash, RAM and instructions, for an asset of so many bytes.
     pub fn rows(&self, asset: usize) -> [(&'static str, String); 5] {
         let Costs { stack, code, .. } = self.costs;
-        let hundreds = |instructions: f64| count((instructions / 100.0).round() as u64 * 100);
         let (typical, dearest, bound) = (hundreds(self.typical), hundreds(self.dearest), hundreds(self.bound));
         let numbers = match self.arithmetic {
             Arithmetic::Floats => "floating point, `Scene`",
@@ -77,6 +76,6 @@ impl Prediction {
 
 impl fmt::Display for Prediction {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "about {} instructions a ray on a {}", count(self.typical.round() as u64), self.chip.title())
+        write!(f, "about {} instructions a ray on {}", hundreds(self.typical), self.chip.phrase())
     }
 }

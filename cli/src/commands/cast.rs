@@ -22,21 +22,22 @@ use crate::{
 /// Rays that a thread takes at a time.
 const BATCH: usize = 1024;
 
-/// Cast the rays of a file at a mesh or an asset
+/// Cast the rays of a file at a mesh, an asset or a world
 ///
-/// RAYS holds six little-endian f32 per ray: origin and direction, for t from 0 to infinity. HITS gets eight bytes per ray:
-/// t as f32, infinity for a miss, and the primitive's number in the file's order as u32, 0xffffffff for a miss. The same
-/// bytes for every structure and any number of threads.
+/// RAYS holds six little-endian f32 per ray: origin and direction, for t from 0 to infinity. ANSWERS gets eight bytes per ray:
+/// t as f32, infinity for a miss, and the primitive's number in the file's order as u32, 0xffffffff for a miss; of an asset
+/// that is its own order, unless it was baked with --keep-numbers. The same bytes for every structure and any number of
+/// threads.
 #[derive(Debug, clap::Args)]
-#[command(after_help = "Example: hitscan cast bunny.obj.gz bunny.rays -o bunny.hits")]
+#[command(after_help = "Example: hitscan cast bunny.obj.gz bunny.rays -o bunny.answers")]
 pub struct Cast {
-    /// Mesh (.obj, .stl, .ply, .gltf, .glb, each also with .gz) or baked asset
-    #[arg(value_name = "MODEL|ASSET")]
+    /// Mesh (.obj, .stl, .ply, .gltf, .glb, each also with .gz), baked asset or world (.toml)
+    #[arg(value_name = "MODEL|ASSET|WORLD")]
     model: PathBuf,
     /// Rays; - for standard input
     rays: PathBuf,
-    /// Hits to write; - for standard output
-    #[arg(short, long, value_name = "HITS", default_value = "-")]
+    /// Answers to write; - for standard output
+    #[arg(short, long, value_name = "ANSWERS", default_value = "-")]
     output: PathBuf,
     #[command(flatten)]
     casting: Casting,
@@ -50,9 +51,10 @@ pub struct Cast {
 impl Cast {
     pub fn run(&self) -> Result<ExitCode, Failure> {
         if !self.csv && self.output == Path::new("-") && io::stdout().is_terminal() {
-            return Err(Failure::new("hits are no text for a terminal", "give -o FILE, or --csv"));
+            return Err(Failure::new("answers are no text for a terminal", "give -o FILE, or --csv"));
         }
         output::check(&self.output)?;
+        output::spare("-o", &self.output, [&*self.model, &*self.rays])?;
         let rays = read_rays(&self.rays, self.casting.interval)?;
         let source = Source::load(&self.model)?;
         source.with_subject(&self.model, &self.casting.structure, false, |subject| {

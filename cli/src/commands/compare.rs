@@ -14,7 +14,7 @@ use crate::{
     scene::{Preset, Source, builtin::BuiltIn},
     stage::CameraArg,
     trial::Rays,
-    units::{count, parse_count},
+    units::{count, parse_count, things},
 };
 
 /// Compare all structures over the same triangles
@@ -64,8 +64,10 @@ pub struct Compare {
 
 impl Compare {
     pub fn run(&self) -> Result<ExitCode, Failure> {
-        for path in self.csv.iter().chain(&self.plot) {
+        let outputs = [("--csv", &self.csv), ("--plot", &self.plot)];
+        for (option, path) in outputs.into_iter().filter_map(|(option, path)| Some((option, path.as_ref()?))) {
             output::check(path)?;
+            output::spare(option, path, self.models.iter().chain(&self.rays).map(PathBuf::as_path))?;
         }
         let reports = match self.growth {
             Some(most) => self.growth(most)?,
@@ -96,14 +98,17 @@ impl Compare {
             let builtin = BuiltIn::new();
             reports.push(self.model("built-in", &builtin.geometry.mesh()?, given.as_deref())?);
         }
-        for path in &self.models {
+        for (place, path) in self.models.iter().enumerate() {
+            if place > 0 {
+                print("\n")?;
+            }
             let source = Source::load(path)?;
             let view = source.view(path)?;
             reports.push(self.model(&path.display().to_string(), &view.mesh, given.as_deref())?);
         }
         if reports.len() > 1 {
             let medians =
-                medians(&reports).map_or(String::new(), |medians| format!("{}\n{}", medians.model, medians.render()));
+                medians(&reports).map_or(String::new(), |medians| format!("\n{}\n{}", medians.model, medians.render()));
             print(&medians)?;
         }
         Ok(reports)
@@ -120,18 +125,16 @@ impl Compare {
         let entries = contest.run(*mesh, &Row::all()).map_err(|failure| failure.about(name))?;
         let triangles = hitscan::Primitives::len(mesh);
         let report = Report { model: name.to_owned(), triangles, preset: self.preset, entries };
-        print(&format!("{}\n{}\n", self.head(name, triangles, &rays), report.render()))?;
+        print(&format!("{}\n{}", self.head(name, triangles, &rays), report.render()))?;
         Ok(report)
     }
 
     /// What a table is about.
     fn head(&self, name: &str, triangles: u32, rays: &Rays) -> String {
         let [primary, bounce, shadow] = [&rays.primary, &rays.bounce, &rays.shadow].map(|rays| count(rays.len()));
-        let (triangles, preset) = (count(triangles), self.preset.name());
+        let (triangles, preset) = (things(triangles, "triangle", "triangles"), self.preset.name());
         let what = if self.rays.is_some() { "given" } else { "bounce" };
-        format!(
-            "{name}: {triangles} triangles, preset {preset}; {primary} primary, {bounce} {what}, {shadow} shadow rays"
-        )
+        format!("{name}: {triangles}, preset {preset}; {primary} primary, {bounce} {what}, {shadow} shadow rays")
     }
 
     fn given_rays(&self, path: &Path) -> Result<Vec<Ray>, Failure> {
@@ -144,6 +147,12 @@ impl Compare {
 
     /// The tables of growing terrains.
     fn growth(&self, most: u32) -> Result<Vec<Report>, Failure> {
+        if most > SIZES[SIZES.len() - 1] {
+            return Err(Failure::new(
+                format!("--growth={most}: the largest terrain has 4,000,000 triangles"),
+                "ask for fewer",
+            ));
+        }
         let sizes: Vec<u32> = SIZES.into_iter().filter(|size| *size <= most).collect();
         if sizes.is_empty() {
             return Err(Failure::new(

@@ -3,15 +3,15 @@ use std::{path::PathBuf, process::ExitCode};
 use super::print;
 use crate::{difference::diff, failure::Failure, hits::read_hits};
 
-/// Compare two files of hits
+/// Compare two files of answers to the same rays
 ///
 /// Counts the rays that they answer differently, bit for bit, and shows the first. Exit code 0 if there are none, 1 if there are some, 2 if a file cannot be read.
 #[derive(Debug, clap::Args)]
-#[command(after_help = "Example: hitscan diff list.hits kdtree.hits")]
+#[command(after_help = "Example: hitscan diff list.answers kdtree.answers")]
 pub struct Diff {
-    /// Hits as `hitscan cast` writes them; - for standard input
+    /// Answers as `hitscan cast` writes them; - for standard input
     a: PathBuf,
-    /// Hits to compare them with
+    /// Answers to compare them with
     b: PathBuf,
 }
 

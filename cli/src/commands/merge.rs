@@ -9,6 +9,7 @@ use crate::{
     output,
     picture::write_png,
     shot::{self, Part},
+    units::things,
 };
 
 /// Put the parts of a picture together
@@ -31,17 +32,18 @@ pub struct Merge {
 impl Merge {
     pub fn run(&self) -> Result<ExitCode, Failure> {
         output::check(&self.output)?;
+        output::spare("-o", &self.output, self.parts.iter().map(PathBuf::as_path))?;
         let read = |path: &PathBuf| Ok((path.display().to_string(), Part::read(path)?));
         let parts: Vec<_> = self.parts.iter().map(read).collect::<Result<_, Failure>>()?;
         let whole = shot::merge(parts)?;
         write_png(&self.output, whole.width, whole.height, &whole.pixels)?;
         let text = format!(
-            "{}: {}x{} from {} parts, {} tiles\n",
+            "{}: {}x{} from {}, {}\n",
             self.output.display(),
             whole.width,
             whole.height,
-            self.parts.len(),
-            whole.of
+            things(self.parts.len(), "part", "parts"),
+            things(whole.of, "tile", "tiles")
         );
         if self.output == Path::new("-") {
             failure::note(&text);

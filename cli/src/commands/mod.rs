@@ -75,7 +75,7 @@ fn predict<P: Primitives + Sync>(
     asset: usize,
 ) -> Result<(), Failure> {
     let rays = Rays::around(&*built.scene(mesh)?);
-    let _ = writeln!(text, "on a {}", chip.title());
+    let _ = writeln!(text, "on {}", chip.phrase());
     match Prediction::new(chip, built, mesh, &rays)? {
         Some(prediction) => prediction.rows(asset).into_iter().for_each(|(what, value)| line(text, what, value)),
         None => line(text, "unknown", "this structure was not measured there"),

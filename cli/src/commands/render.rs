@@ -14,10 +14,10 @@ use crate::{
     scene::Source,
     shot::{Identity, Part, Settings, Shot, Tiles, rows, with_shot},
     stage::{DEPTHS, Tally},
-    units::{count, seconds},
+    units::{count, seconds, things},
 };
 
-/// Draw a mesh, an asset or, without either, the built-in scene
+/// Draw a mesh, an asset, a world or, without any, the built-in scene
 ///
 /// Prints triangles, the structure's bytes and build time, the rays by kind and depth, their rate, and the share of time
 /// spent in queries. That share is an estimate: reading the clock around every query would distort it, so each thread times
@@ -26,8 +26,8 @@ use crate::{
 #[command(after_help = "Examples: hitscan render\n          \
                         hitscan render bunny.obj.gz -o bunny.png --size 1280x960 --camera 0,0.2,0.4/0,0.1,0")]
 pub struct Render {
-    /// Mesh (.obj, .stl, .ply, .gltf, .glb, each also with .gz) or baked asset; none for the built-in scene
-    #[arg(value_name = "MODEL|ASSET")]
+    /// Mesh (.obj, .stl, .ply, .gltf, .glb, each also with .gz), baked asset or world (.toml); none for the built-in scene
+    #[arg(value_name = "MODEL|ASSET|WORLD")]
     model: Option<PathBuf>,
     /// PNG to write; - for standard output
     #[arg(short, long, value_name = "FILE", default_value = "picture.png")]
@@ -60,6 +60,7 @@ impl Render {
         /// The most pixels along a side of a texture.
         const TEXTURES: u16 = 2048;
         output::check(&self.output)?;
+        output::spare("-o", &self.output, self.model.as_deref())?;
         let begun = Instant::now();
         let load = |path| Source::load_with(path, Some(TEXTURES)).map(|source| (source, path));
         let source = self.model.as_deref().map(load).transpose()?;
@@ -89,18 +90,33 @@ impl Render {
         Ok(ExitCode::SUCCESS)
     }
 
+    /// The part that is there already; what else is there is not this command's to replace.
+    fn standing(&self) -> Result<Option<Part>, Failure> {
+        if self.output == Path::new("-") || !self.output.is_file() {
+            return Ok(None);
+        }
+        let strange = |_| {
+            let what = format!("{}: stands there and is no part of a picture", self.output.display());
+            Failure::new(what, "give another -o, or remove it")
+        };
+        Part::read(&self.output).map(Some).map_err(strange)
+    }
+
     /// Draws some tiles, continues if the file holds the first of them, and keeps it up to date on the way.
     fn part(&self, source: Option<(&Source, &Path)>, tiles: Tiles, of: u32) -> Result<(String, Picture), Failure> {
         /// How much work may be lost.
         const BETWEEN_SAVES: Duration = Duration::from_secs(10);
         let (width, height) = self.settings.size();
-        if of > height || tiles.end > of {
-            let what = format!("--tiles {tiles} --of {of}: the picture has {height} rows");
-            return Err(Failure::new(what, "ask for tiles below N, and at most as many as rows"));
+        if of > height {
+            let what = format!("--of {of}: the picture has {height} rows");
+            return Err(Failure::new(what, "divide it into at most as many tiles"));
+        }
+        if tiles.end > of {
+            let what = format!("--tiles {tiles} --of {of}: there are tiles 0 to {}", of - 1);
+            return Err(Failure::new(what, "ask for some of these"));
         }
         let identity = Identity::new(source.map(|(source, _)| source), &self.settings)?;
-        let standing = Part::read(&self.output).ok();
-        let standing = standing.filter(|part| part.begins(&identity, (width, height), tiles, of));
+        let standing = self.standing()?.filter(|part| part.begins(&identity, (width, height), tiles, of));
         let empty = Tiles { end: tiles.start, ..tiles };
         let mut part = standing.unwrap_or(Part { identity, width, height, tiles: empty, of, pixels: Vec::new() });
         with_shot(source, &self.settings, |shot, text| {
@@ -133,10 +149,10 @@ impl Render {
     /// Adds what the picture took.
     fn describe(&self, text: &mut String, picture: &Picture, total: f64) {
         let Picture { tally, seconds: drawing, .. } = picture;
-        let samples = self.settings.samples * self.settings.samples;
+        let samples = things(self.settings.samples * self.settings.samples, "sample", "samples");
         let of = self.tiles.zip(self.of).map_or(String::new(), |(tiles, of)| format!(", tiles {tiles} of {of}"));
         let size = self.settings.size;
-        line(text, "picture", format!("{}, {size} x {samples} samples{of}", self.output.display()));
+        line(text, "picture", format!("{}, {size} x {samples}{of}", self.output.display()));
         for depth in 0..DEPTHS {
             let (closest, shadow) = (tally.closest[depth], tally.shadow[depth]);
             if closest > 0 {

@@ -4,6 +4,7 @@ use std::fmt;
 use std::path::PathBuf;
 
 use crate::input;
+use crate::units::things;
 
 /// Why a mesh file was refused, printed as `PATH:LINE: WHAT: HOW TO MEND IT`.
 #[derive(Debug)]
@@ -62,8 +63,8 @@ pub enum Fault {
     },
     /// A corner names a vertex that is not there.
     #[error(
-        "triangle {triangle} names vertex {index}, but the file has {vertices} vertices, counted \
-         from {first}: correct the index, or export the mesh again"
+        "triangle {triangle} names vertex {index}, but the file has {}, counted from {first}: correct the index, or \
+         export the mesh again", things(*vertices, "vertex", "vertices")
     )]
     IndexOutOfRange {
         /// The triangle, counted from 0.

@@ -6,6 +6,7 @@
 use std::collections::HashMap;
 
 use super::{Fault, LoadError, Model};
+use crate::units::things;
 
 /// Bytes before a binary file's triangles: 80 of header and a u32 count.
 const HEAD: usize = 84;
@@ -25,7 +26,8 @@ pub(super) fn read(bytes: &[u8]) -> Result<Model, LoadError> {
         Err(Fault::NotA("an STL").into())
     } else if bytes.len() < size {
         let (records, has) = (bytes.len().saturating_sub(HEAD) / RECORD, bytes.len());
-        let missing = format!("{count} triangles announced, {records} in its {has} bytes");
+        let announced = things(count, "triangle", "triangles");
+        let missing = format!("{announced} announced, {records} in its {has} bytes");
         Err(Fault::Truncated { missing }.into())
     } else {
         let mut model = binary(&bytes[HEAD..size])?;

@@ -67,7 +67,7 @@ impl Built {
     ) -> Result<Self, Failure> {
         let name = named.title(preset);
         let Some(plan) = named.plan(preset, most) else {
-            let what = format!("--structure {}: only renders, casts at and compares meshes", named.name);
+            let what = format!("{} is for render, cast and compare", named.name);
             return Err(Failure::new(what, "choose another structure"));
         };
         let progress = Progress::spinner(&format!("building the {name} …"));
@@ -141,7 +141,7 @@ pub fn refuse(error: BuildError) -> Failure {
         BuildError::Full(_) => "free some memory, or choose `--preset small`",
         BuildError::Bounds { .. } => "remove that primitive or move the mesh nearer to the origin",
         BuildError::TooMany { .. } => "split the mesh",
-        BuildError::Budget { .. } => "allow more bytes, or simplify the mesh",
+        BuildError::Budget { at_least, allowed } => return Failure::Crowded { allowed, least: at_least },
     };
     Failure::new(format!("the structure cannot be built: {error}"), mend)
 }

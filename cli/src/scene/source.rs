@@ -91,7 +91,13 @@ impl Source {
     }
 
     fn load_asset(path: &Path) -> Result<Self, Failure> {
+        // Another byte order is another fault.
+        let swapped = [MAGIC[3], MAGIC[2], MAGIC[1], MAGIC[0]];
         let bytes = input::read(path)?;
+        if !bytes.starts_with(MAGIC) && !bytes.starts_with(&swapped) {
+            let what = format!("{}: is no asset, but may be answers of `hitscan cast`", path.display());
+            return Err(Failure::new(what, "name what `hitscan bake` wrote"));
+        }
         let (words, rest) = bytes.as_chunks();
         let words: Vec<u32> = words.iter().copied().map(u32::from_le_bytes).collect();
         if !rest.is_empty() {

@@ -17,7 +17,7 @@ use super::{
 use crate::{
     failure::Failure,
     stage::{Up, glazed, plate},
-    units::{count, seconds},
+    units::{count, seconds, things},
 };
 
 /// A source under its structure, ready for rays.
@@ -148,10 +148,10 @@ impl Subject<'_> {
     /// How many triangles there are, for people.
     pub fn size(&self) -> String {
         match &self.body {
-            Body::Mesh { view, .. } => format!("{} triangles", count(view.mesh.len())),
+            Body::Mesh { view, .. } => things(view.mesh.len(), "triangle", "triangles"),
             Body::World { placed, own, .. } => {
-                let (all, own, placed) = (count(self.primitives), count(*own), count(placed.len()));
-                format!("{all} triangles, {own} of their own placed {placed} times")
+                let all = things(self.primitives, "triangle", "triangles");
+                format!("{all}, {} of their own placed {}", count(*own), things(placed.len(), "time", "times"))
             }
         }
     }

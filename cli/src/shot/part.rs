@@ -1,6 +1,10 @@
 //! Parts of a picture as files: PNGs of some of its rows, which say in text chunks whose rows they are.
 
-use std::{fs::File, io::BufReader, path::Path};
+use std::{
+    fs::File,
+    io::{BufReader, ErrorKind},
+    path::Path,
+};
 
 use super::{Settings, Tiles};
 use crate::{
@@ -75,13 +79,13 @@ impl Part {
 
     /// Reads one.
     pub fn read(path: &Path) -> Result<Self, Failure> {
-        let file =
-            File::open(path).map_err(|error| InputError { path: path.to_owned(), fault: InputFault::Io(error) })?;
+        let open = |path: &Path| if path.is_dir() { Err(ErrorKind::IsADirectory.into()) } else { File::open(path) };
+        let file = open(path).map_err(|error| InputError { path: path.to_owned(), fault: InputFault::Io(error) })?;
         let no_part = |why: &dyn std::fmt::Display| {
             let what = format!("{}: is no part of a picture ({why})", path.display());
             Failure::new(what, "name what `hitscan render --tiles` wrote")
         };
-        let image = picture::read_png(BufReader::new(file)).map_err(|error| no_part(&error))?;
+        let image = picture::read_png(BufReader::new(file)).map_err(|why| no_part(&why))?;
         let text = |keyword| image.texts.iter().find(|(key, _)| key == keyword).map(|(_, text)| text.as_str());
         let part = text(PICTURE).zip(text(TILES)).and_then(|(picture, tiles)| {
             let mut lines = picture.lines().map(str::to_owned);

@@ -18,7 +18,7 @@ pub struct Settings {
     pub(crate) structure: StructureArgs,
     /// The most mirror images within mirror images
     #[arg(short, long, value_name = "N", default_value_t = 3,
-          value_parser = clap::value_parser!(u32).range(0..DEPTHS as i64))]
+          value_parser = clap::value_parser!(u32).range(0..=DEPTHS as i64 - 1))]
     pub(crate) bounces: u32,
     /// Rays per pixel along each side: 3 makes 9
     #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=16))]

@@ -73,9 +73,7 @@ impl File {
     /// Reads a description.
     pub fn read(path: &Path) -> Result<Self, Failure> {
         let bytes = input::read(path)?;
-        let refuse = |why: &dyn std::fmt::Display| {
-            Failure::new(format!("{}: {why}", path.display()), "mend the description of the world")
-        };
+        let refuse = |why: &dyn std::fmt::Display| Failure::new(format!("{}: {why}", path.display()), super::HELP);
         let text = std::str::from_utf8(&bytes).map_err(|error| refuse(&error))?;
         toml::from_str(text).map_err(|error| {
             let line = error.span().map_or(1, |span| 1 + text[..span.start].matches('\n').count());

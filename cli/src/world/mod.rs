@@ -1,29 +1,4 @@
-//! Worlds: a few meshes, placed very often, described in a short text.
-//!
-//! ```toml
-//! [part.bush]
-//! mesh = "bush.obj"                       # beside this file
-//!
-//! [[part.hedge.place]]                    # a part made of parts
-//! part = "bush"
-//! grid = [9, 1, 1]
-//! step = [0.8, 0, 0]
-//!
-//! [[place]]
-//! part = "hedge"
-//! at = [1, 0, 2]
-//! turn = [0, 90, 0]                       # degrees about x, then y, then z
-//! scale = 1.5
-//!
-//! [[place]]                               # a thousand of them, where chance puts them: the same on every machine
-//! part = "bush"
-//! scatter = 1000
-//! seed = 7
-//! from = [-50, 0, -50]
-//! to = [50, 0, 50]
-//! turns = [0, 360, 0]                     # turned by up to so much more
-//! scales = 0.4                            # and by up to this factor larger or smaller: 0.4 is 1/1.4 to 1.4
-//! ```
+//! Worlds: a few meshes, placed very often, described in a short text such as `example.toml`.
 
 mod file;
 mod places;
@@ -44,6 +19,12 @@ use crate::{
     scene::{Built, Choice, Geometry, Named, Preset, StructureArgs, broken},
 };
 
+/// A description with all that one can say, for the help.
+pub const EXAMPLE: &str = include_str!("example.toml");
+
+/// Where descriptions are described.
+const HELP: &str = "see `hitscan bake --help`";
+
 /// A mesh that is placed, with its structure.
 struct Part {
     geometry: Geometry,
@@ -62,7 +43,7 @@ pub fn load(path: &Path, options: &StructureArgs, textures: Option<u16>) -> Resu
         _ => Named::assumed(),
     };
     let file = File::read(path)?;
-    let (meshes, placed) = places::expand(&file).map_err(|what| named(&what, "mend the description"))?;
+    let (meshes, placed) = places::expand(&file).map_err(|what| named(&what, HELP))?;
     let parts = meshes.iter().map(|mesh| part(path, mesh, structure, options.preset, textures));
     let parts: Vec<Part> = parts.collect::<Result<_, _>>()?;
     let mut placed: Vec<Instance> = placed.into_iter().map(|(part, place)| Instance::new(part, place)).collect();

@@ -126,6 +126,12 @@ mod tests {
     }
 
     #[test]
+    fn the_example_of_the_help_is_a_world() {
+        let (meshes, points) = world(super::super::EXAMPLE).unwrap();
+        assert_eq!((meshes, points.len()), (1, 1009));
+    }
+
+    #[test]
     fn grids_of_groups_are_laid_out() {
         let text = "[part.a]\nmesh = \"a.obj\"\n[part.b]\nmesh = \"a.obj\"\n\
                     [[part.row.place]]\npart = \"a\"\ngrid = [2, 1, 1]\nstep = [10, 0, 0]\n\

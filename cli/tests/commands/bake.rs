@@ -48,7 +48,17 @@ fn the_budget_is_kept_or_refused() {
         assert!(folder.read("tight.hits").len() <= most);
     }
     let error = folder.refuse("bake waves.obj -o none.hits --fit 4K");
-    assert!(error.contains("--fit 4096") && error.contains("allow more bytes"), "{error}");
+    assert!(error.contains("--fit 4096: all but the structure takes "), "{error}");
+    assert!(error.contains("allow more bytes, or give --lattice or --meshlets"), "{error}");
+    folder.succeed("bake waves.obj -o list.hits -s list");
+    let rest = folder.read("list.hits").len();
+    for structure in ["kdtree", "grid", "bvh", "dual-split", "auto"] {
+        let error = folder.refuse(&format!("bake waves.obj -o none.hits -s {structure} --fit {}", rest + 64));
+        assert!(error.contains("all but the structure takes ") && error.contains("which leaves "), "{error}");
+        assert!(error.contains("give --lattice or --meshlets"), "{error}");
+    }
+    let error = folder.refuse(&format!("bake waves.obj -o none.hits --lattice --meshlets --fit {}", 16 * 400));
+    assert!(error.ends_with("allow more bytes, or simplify the mesh\n") || !error.contains("give --"), "{error}");
 }
 
 #[test]
@@ -160,7 +170,7 @@ fn what_is_placed_twice_is_known_as_such() {
     let folder = Folder::new();
     folder.write("twice.gltf", TWICE);
     let text = folder.succeed("info twice.gltf");
-    for line in ["unique triangles   2 in 1 parts, placed 3 times", "placed triangles   6"] {
+    for line in ["unique triangles   2 in 1 part, placed 3 times", "placed triangles   6"] {
         assert!(text.contains(line), "{line}: {text}");
     }
     let text = folder.succeed("info tetrahedron.obj");
@@ -215,6 +225,38 @@ fn triangles_that_stand_in_another_order_keep_their_materials_and_if_asked_their
             assert!(folder.read("other.png") == folder.read("reference.png"), "{structure} {asset}");
         }
     }
+}
+
+#[test]
+fn what_an_asset_cannot_do_is_said() {
+    let folder = Folder::new();
+    folder.write("waves.obj", waves(20));
+    let order = "numbers are not the model's (--keep-numbers keeps them)";
+    let whole = "no `LatticeScene` can be made";
+    let fpu = "a Cortex-M0 has no FPU: with --lattice";
+    for (options, has, lacks) in [
+        ("", "", [order, whole, fpu]),
+        ("-s bvh", order, [whole, fpu, fpu]),
+        ("-s dual-split", order, [whole, fpu, fpu]),
+        ("-s bvh --keep-numbers", "", [order, whole, fpu]),
+        ("--meshlets", order, [whole, fpu, fpu]),
+        ("--lattice", whole, [order, fpu, fpu]),
+        ("--lattice -s kdtree-compact", "", [order, whole, fpu]),
+        ("--lattice --target m0", "", [whole, fpu, fpu]),
+        ("--target m4", "", [whole, fpu, fpu]),
+        ("--target m0", fpu, [whole; 3]),
+        ("--target m0 -s grid", "with --lattice -s dual-split, for", [whole; 3]),
+    ] {
+        let text = folder.succeed(&format!("bake waves.obj -o waves.hits {options}"));
+        assert!(text.contains(has) && lacks.iter().all(|other| !text.contains(other)), "{options}: {text}");
+    }
+    // The figure is what the option then brings.
+    let text = folder.succeed("bake waves.obj -o waves.hits --target m0");
+    let figure = text.split("a ray takes about ").nth(1).unwrap().split(' ').next().unwrap();
+    let text = folder.succeed("bake waves.obj -o waves.hits --target m0 --lattice");
+    assert!(text.contains(&format!("{figure} instructions on average")), "{figure}: {text}");
+    let text = folder.succeed("bake waves.obj -o waves.hits --target rv32imc");
+    assert!(text.contains("about ") && text.contains(" instructions a ray on an RV32IMC"), "{text}");
 }
 
 #[test]
@@ -298,6 +340,10 @@ fn a_soup_answers_and_looks_like_its_mesh() {
     for unfit in ["--lattice", "--fit 64K", "--textures", "--target m4"] {
         folder.refuse(&format!("bake sheet.obj -o none.hits --soup {unfit}"));
     }
-    folder.refuse("info soup.hits --target m4");
+    let text = folder.succeed("info soup.hits --target m4");
+    assert!(
+        text.contains("triangles ") && text.contains("what a soup takes on a Cortex-M4F: name a --structure"),
+        "{text}"
+    );
     folder.succeed("info soup.hits --target m4 -s kdtree");
 }

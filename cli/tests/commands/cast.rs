@@ -116,10 +116,7 @@ fn the_structure_of_hosts_answers_like_the_list() {
     folder.succeed("bake waves.obj -o kept.hits -s bvh --keep-numbers");
     for command in ["bake waves.obj -o a.hits -s wide", "info waves.obj -s wide", "render -s wide -o a.png"] {
         let error = folder.refuse(command);
-        assert!(
-            error.contains("--structure wide: only renders, casts at and compares meshes: choose another"),
-            "{error}"
-        );
+        assert!(error.contains("wide is for render, cast and compare: choose another structure"), "{error}");
     }
     assert!(folder.refuse("cast kept.hits rays -s wide").contains("name the mesh it was made from"));
 }

@@ -31,7 +31,7 @@ fn every_structure_has_a_row_and_one_is_recommended() {
     }
     // The list tests everything and has no nodes.
     assert_eq!(row(&text, "list")[3..7], ["0", "0.0", "-", "1,800"]);
-    let last = text.trim_end().lines().last().unwrap();
+    let last = text.lines().last().unwrap();
     assert!(last.starts_with("recommended, and what --structure auto takes: "), "{last}");
     let recommended = last.split(": ").nth(1).unwrap();
     for command in ["info waves.obj -s auto", "bake waves.obj -s auto -o waves.hits"] {
@@ -61,7 +61,12 @@ fn several_models_have_medians_and_files() {
     folder.write("small.obj", waves(8));
     folder.write("large.obj", waves(30));
     let text = folder.succeed(&format!("compare small.obj large.obj {QUICK} --csv all.csv --plot all.svg"));
-    assert!(text.contains("small.obj: 128") && text.contains("\nmedians of 2 meshes\n"), "{text}");
+    assert!(
+        text.starts_with("small.obj: 128")
+            && text.contains("\n\nlarge.obj: ")
+            && text.contains("\n\nmedians of 2 meshes\n"),
+        "{text}"
+    );
     let csv = String::from_utf8(folder.read("all.csv")).unwrap();
     let rows = structures(&folder).len() - 1;
     assert!(csv.starts_with("model,triangles,preset,structure,build_s,"), "{csv}");
@@ -85,6 +90,7 @@ fn growth_is_shown() {
     assert!(["O(n)", "O(log n)", "O(n log n)"].into_iter().all(|guide| svg.contains(guide)));
     assert!(String::from_utf8(folder.read("growth.csv")).unwrap().contains("\n\"terrain of 4,000\",4000,"));
     assert!(folder.refuse("compare --growth=999").contains("1,000"));
+    assert!(folder.refuse("compare --growth=4000001").contains("the largest terrain has 4,000,000 triangles: ask for"));
 }
 
 #[test]

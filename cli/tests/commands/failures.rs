@@ -102,6 +102,47 @@ fn outputs_that_cannot_be_written_are_refused() {
     }
 }
 
+#[test]
+fn an_output_replaces_no_input() {
+    let folder = folder();
+    folder.succeed("bake tetrahedron.obj -o keep.hits");
+    folder.succeed("render tetrahedron.obj --size 8x8 --samples 1 --tiles 0 --of 1 -o part.png");
+    for (arguments, kept) in [
+        ("cast keep.hits one.rays -o keep.hits", "keep.hits"),
+        ("cast keep.hits one.rays -o ./one.rays", "one.rays"),
+        ("render keep.hits -o keep.hits", "keep.hits"),
+        ("bake tetrahedron.obj -o tetrahedron.obj", "tetrahedron.obj"),
+        ("merge part.png -o part.png", "part.png"),
+        ("compare tetrahedron.obj --csv tetrahedron.obj", "tetrahedron.obj"),
+        ("compare tetrahedron.obj --rays one.rays --plot one.rays", "one.rays"),
+    ] {
+        let before = folder.read(kept);
+        let error = folder.refuse(arguments);
+        assert!(error.contains(&format!("{kept}: is read and written: give another -")), "{error}");
+        assert!(folder.read(kept) == before, "{arguments}");
+    }
+    // Standard streams and devices are both without harm.
+    #[cfg(target_os = "linux")]
+    folder.succeed("cast tetrahedron.obj /dev/null -o /dev/null");
+}
+
+#[test]
+fn answers_are_not_taken_for_an_asset() {
+    let folder = folder();
+    folder.succeed("cast tetrahedron.obj one.rays -o answers.hits");
+    for reader in ["info {}", "render {} -o out.png", "cast {} one.rays -o out.bin", "compare {}"] {
+        let error = folder.refuse(&reader.replace("{}", "answers.hits"));
+        assert!(
+            error.contains("answers.hits: is no asset, but may be answers of `hitscan cast`: name what"),
+            "{error}"
+        );
+    }
+    for name in ["cast", "diff"] {
+        let text = folder.succeed(&format!("{name} --help"));
+        assert!(text.contains(".answers") && !text.contains(".hits"), "{text}");
+    }
+}
+
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_disk_is_reported() {
@@ -160,6 +201,17 @@ fn the_command_line_itself_is_checked() {
     ] {
         assert!(folder.refuse(arguments).contains("--help"), "{arguments}");
     }
+    let error = folder.refuse("render --bounces -1");
+    assert!(error.contains("unexpected argument '-1' found: see") && !error.contains("tip"), "{error}");
+    for (option, range) in [("--bounces 1000000", "0..=16"), ("--samples 1000000", "1..=16")] {
+        assert!(folder.refuse(&format!("render {option}")).contains(range), "{option}");
+    }
+    for (name, value) in [("render", "[MODEL|ASSET|WORLD]"), ("cast", "<MODEL|ASSET|WORLD>"), ("bake", "<MODEL|WORLD>")]
+    {
+        let text = folder.succeed(&format!("{name} --help"));
+        assert!(text.contains(&format!("hitscan {name} [OPTIONS] {value}")) && text.contains("(.toml)"), "{text}");
+    }
+    assert!(!folder.succeed("info --help").contains("wide") && folder.succeed("cast --help").contains("or wide"));
     for name in ["", "render ", "bake ", "info ", "cast ", "compare ", "diff "] {
         let text = folder.succeed(&format!("{name}--help"));
         assert!(text.contains("Usage: hitscan"), "{text}");

@@ -42,7 +42,7 @@ fn parts_make_the_whole_picture() {
 }
 
 #[test]
-fn a_part_is_continued_and_a_strange_file_replaced() {
+fn a_part_is_continued_and_a_strange_file_left_alone() {
     let folder = folder();
     let all = part(&folder, "2..9", 10, "fresh.png");
     let first = part(&folder, "2..5", 10, "part.png");
@@ -56,9 +56,10 @@ fn a_part_is_continued_and_a_strange_file_replaced() {
     // Done already: nothing is drawn.
     assert_eq!(rays(&part(&folder, "2..9", 10, "part.png")), 0);
     for strange in [b"no picture".to_vec(), folder.read("whole.png"), folder.read("part.png")[..300].to_vec()] {
-        folder.write("part.png", strange);
-        part(&folder, "2..9", 10, "part.png");
-        assert!(folder.read("part.png") == folder.read("fresh.png"));
+        folder.write("strange.png", &strange);
+        let error = folder.refuse(&format!("render tetrahedron.obj {SETTINGS} --tiles 2..9 --of 10 -o strange.png"));
+        assert!(error.contains("strange.png: stands there and is no part of a picture: give another -o"), "{error}");
+        assert!(folder.read("strange.png") == strange);
     }
     // What was drawn with other settings is not continued.
     folder.succeed("render tetrahedron.obj --size 24x20 --samples 2 --tiles 2..5 --of 10 -o part.png");
@@ -81,7 +82,8 @@ fn what_does_not_belong_together_is_refused() {
     refuse("late.png a.png", "tiles 4..5 of 10 are missing");
     refuse("a.png none.png", "none.png: no such file");
     refuse("a.png whole.png", "whole.png: is no part of a picture");
-    refuse("a.png tetrahedron.obj", "tetrahedron.obj: is no part");
+    refuse("a.png tetrahedron.obj", "tetrahedron.obj: is no part of a picture (it is no PNG, or a damaged one)");
+    refuse("a.png .", ".: is a directory: name a file in it");
     folder.succeed(&format!("render {SETTINGS} --tiles 4..10 --of 10 -o scene.png"));
     refuse("a.png scene.png", "scene.png: of another scene than a.png");
     folder.succeed("render tetrahedron.obj --size 24x20 --samples 2 --tiles 4..10 --of 10 -o settings.png");
@@ -106,6 +108,8 @@ fn what_does_not_belong_together_is_refused() {
     for options in ["--tiles 0..5", "--of 5", "--tiles 5..3 --of 9", "--tiles 0 --of 0", "--tiles 9..11 --of 10"] {
         folder.refuse(&format!("render tetrahedron.obj {SETTINGS} {options}"));
     }
+    let error = folder.refuse(&format!("render tetrahedron.obj {SETTINGS} --tiles 7 --of 4"));
+    assert!(error.contains("there are tiles 0 to 3"), "{error}");
     let error = folder.refuse(&format!("render tetrahedron.obj {SETTINGS} --tiles 0 --of 21"));
     assert!(error.contains("20 rows"), "{error}");
 }

@@ -61,6 +61,7 @@ fn a_world_is_described_part_by_part() {
         let said = text.split_whitespace().collect::<Vec<_>>().join(" ");
         for line in [
             "8 triangles, 4 of their own placed 2 times",
+            "in all 8 triangles",
             "size [6.000007, 2.000004, 2.000004]",
             "instances 2",
             "part 0 placed 2 times",
@@ -91,6 +92,9 @@ fn plants_are_placed_in_thousands() {
 fn descriptions_that_say_nothing_sensible_are_refused() {
     let folder = Folder::new();
     folder.write("good.toml", WORLD);
+    let help = folder.succeed("bake --help");
+    assert!(help.contains("[[part.hedge.place]]") && help.contains("scatter = 1000"), "{help}");
+    assert!(!folder.succeed("bake -h").contains("[[place]]"));
     for (text, why) in [
         ("[part", "line 1"),
         ("[part.a]\nmesh = \"tetrahedron.obj\"\n[[place]]\npart = \"b\"\n", "there is no part \"b\""),
@@ -113,6 +117,8 @@ fn descriptions_that_say_nothing_sensible_are_refused() {
         for command in ["render bad.toml -o out.png", "bake bad.toml -o out.hits"] {
             let error = folder.refuse(command);
             assert!(error.contains(why), "{text}: {error}");
+            let is_mesh = why.contains(".obj") || why.contains(".toml");
+            assert!(is_mesh || error.ends_with("see `hitscan bake --help`\n"), "{error}");
         }
     }
     for options in ["--lattice", "--normals", "--fit 3K", "--target m4", "-s list"] {

@@ -1,3 +1,5 @@
+mod fit;
+mod notes;
 mod table;
 mod vertices;
 
@@ -13,6 +15,7 @@ use hitscan::{
 };
 
 use self::{
+    fit::Fit,
     table::table,
     vertices::{Triangles, Vertices, dressed, neighbours},
 };
@@ -26,16 +29,24 @@ use crate::{
     world::{self, write_words},
 };
 
+/// The structure's entry in the table, and up to three words of padding.
+const ENTRY: usize = 16 + 12;
+
+/// How it is called.
+const EXAMPLES: &str = "Examples: hitscan bake bunny.obj.gz -o bunny.hits --preset small --fit 3M\n          \
+                        hitscan bake robot.stl -o robot.hits --target m4 --fit 64K\n          \
+                        hitscan bake robot.stl -o robot.hits --preset fast --soup";
+
 /// Turn a mesh into the asset that firmware includes
 ///
 /// An asset holds triangles, a structure over them and materials in one block of bytes, and rays are cast at it where it
 /// lies. Prints what the bytes are for and the worst case of a ray. The same bytes on every host.
 #[derive(Debug, clap::Args)]
-#[command(after_help = "Examples: hitscan bake bunny.obj.gz -o bunny.hits --preset small --fit 3M\n          \
-                        hitscan bake robot.stl -o robot.hits --target m4 --fit 64K\n          \
-                          hitscan bake robot.stl -o robot.hits --preset fast --soup")]
+#[command(after_help = EXAMPLES,
+          after_long_help = format!("{EXAMPLES}\n\nA world is described by a text such as this:\n\n{}", world::EXAMPLE))]
 pub struct Bake {
     /// Mesh (.obj, .stl, .ply, .gltf, .glb, each also with .gz), or the description of a world of placed meshes (.toml)
+    #[arg(value_name = "MODEL|WORLD")]
     model: PathBuf,
     /// Asset to write; - for standard output
     #[arg(short, long, value_name = "FILE", default_value = "scene.hits")]
@@ -51,7 +62,8 @@ pub struct Bake {
     /// Keep the triangles' numbers where a structure (bvh, dual-split) puts them into another order, for 4 to 8 bytes each
     #[arg(long)]
     keep_numbers: bool,
-    /// Put the vertices on a lattice of 16 bits per coordinate: 6 bytes each instead of 12
+    /// Put the vertices on a lattice of 16 bits per coordinate: 6 bytes each instead of 12; with kdtree-compact or dual-split,
+    /// but not with the default structure, it can be asked in whole numbers (`LatticeScene`), for chips without FPU
     #[arg(long)]
     lattice: bool,
     /// Store corners in 3 bytes a triangle instead of 6 or 12, for 3 % more instructions per ray; triangles that follow one
@@ -77,6 +89,7 @@ pub struct Bake {
 impl Bake {
     pub fn run(&self) -> Result<ExitCode, Failure> {
         output::check(&self.output)?;
+        output::spare("-o", &self.output, [&*self.model])?;
         if self.model.extension().is_some_and(|extension| extension == "toml") {
             return self.world();
         }
@@ -106,15 +119,20 @@ impl Bake {
         let bare = bake(&vertices, model.indices(), palette, None, numbers)?.len() * 4;
         // What there was too much, because vertices stand several times in the order of the leaves.
         let mut excess = 0;
-        let (built, corners, words) = loop {
-            let most = self.fit.map(|most| room(most, bare + excess)).transpose()?;
-            let (built, order) = match self.target {
+        let (built, corners, words, order) = loop {
+            let fit = self.fit.map(|most| Fit { most, rest: bare + excess + ENTRY, mend: self.smaller() });
+            let most = fit.as_ref().map(Fit::room).transpose()?;
+            let built = match self.target {
                 Some(chip) => shapes.choose(chip, self.structure.unwrap_or_default(), most),
                 None => {
                     let structure = self.structure.unwrap_or(Choice::Named(Named::assumed()));
                     shapes.build(structure, self.preset.unwrap_or_default(), most)
                 }
-            }?;
+            };
+            let (built, order) = built.map_err(|failure| match &fit {
+                Some(fit) => fit.explain(failure),
+                None => failure,
+            })?;
             let corners = bake::reorder(&model, &order);
             let order: Vec<u32> = order.iter().map(|&place| near[place as usize]).collect();
             let keeps = self.keep_numbers && order != unmoved;
@@ -122,10 +140,13 @@ impl Bake {
             let mesh = Mesh::new(model.vertices(), &corners[..]).map_err(broken)?;
             let numbers = keeps.then_some(&order);
             let words = bake(&vertices, mesh.indices(), &palette, Some(built.structure(&mesh)?), numbers)?;
-            match self.fit.map_or(0, |most| (words.len() * 4).saturating_sub(most)) {
-                0 => break (built, corners, words),
-                more if self.meshlets && excess == 0 && more < built.bytes() => excess = more,
-                _ => return Err(too_large(self.fit, &built, words.len() * 4)),
+            let bytes = words.len() * 4;
+            match fit.filter(|fit| bytes > fit.most) {
+                None => break (built, corners, words, order),
+                Some(Fit { most, .. }) if self.meshlets && excess == 0 && bytes - most < built.bytes() => {
+                    excess = bytes - most;
+                }
+                Some(fit) => return Err(fit.refuse(&built.name, bytes.saturating_sub(fit.rest))),
             }
         };
         let model = Mesh::new(model.vertices(), &corners[..]).map_err(broken)?;
@@ -135,6 +156,7 @@ impl Bake {
         if let Some(snapped) = &vertices.snapped {
             let _ = writeln!(table, "vertices moved by at most {} to the lattice", snapped.displacement);
         }
+        table += &self.notes(&model, structure.kind(), order != unmoved);
         if let Some(chip) = self.target {
             let asset = words.len() * 4;
             match &vertices.triangles(model.indices())? {
@@ -155,6 +177,16 @@ impl Bake {
         let words = dressed(Baker::new().soup(mesh).structure(structure), &geometry.palette).finish();
         write_words(&self.output, &words)?;
         self.report(&table(&words, &built, &structure, geometry.len(), &self.output)?)
+    }
+
+    /// What could take fewer bytes, of what was not asked for yet.
+    fn smaller(&self) -> String {
+        let options = [("--lattice", self.lattice || self.normals), ("--meshlets", self.meshlets)];
+        let options: Vec<&str> = options.into_iter().filter(|(_, given)| !given).map(|(option, _)| option).collect();
+        match options.is_empty() {
+            true => "allow more bytes, or simplify the mesh".to_owned(),
+            false => format!("allow more bytes, or give {}", options.join(" or ")),
+        }
     }
 
     /// Prints it, but not where the asset is.
@@ -190,21 +222,4 @@ impl Bake {
         })?;
         self.report(&table)
     }
-}
-
-fn too_large(most: Option<usize>, built: &Built, bytes: usize) -> Failure {
-    let what = format!("--fit {}: with this structure ({}) it takes {bytes} bytes", most.unwrap_or(0), built.name);
-    Failure::new(what, "allow more bytes, or choose another structure, such as kdtree")
-}
-
-/// What the structure may take where the whole may take `most` and the rest takes `bare`.
-fn room(most: usize, bare: usize) -> Result<usize, Failure> {
-    /// The structure's entry in the table, and up to three words of padding.
-    const ENTRY: usize = 16 + 12;
-    most.checked_sub(bare + ENTRY).ok_or_else(|| too_small(most, bare + ENTRY))
-}
-
-fn too_small(most: usize, least: usize) -> Failure {
-    let what = format!("--fit {most}: the asset takes more than {least} bytes without a structure");
-    Failure::new(what, "allow more bytes, or simplify the mesh")
 }

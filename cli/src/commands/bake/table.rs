@@ -8,7 +8,7 @@ use hitscan::{
 use crate::{
     failure::Failure,
     scene::{Built, Shape},
-    units::count,
+    units::{count, things},
 };
 
 /// The bytes by what they are for, and the worst case of a ray.
@@ -46,9 +46,9 @@ pub fn table(
         ("total", total),
     ];
     let mut text = format!(
-        "{}: {} triangles\n{:<20}{:>14}{:>14}\n",
+        "{}: {}\n{:<20}{:>14}{:>14}\n",
         output.display(),
-        count(triangles),
+        things(triangles, "triangle", "triangles"),
         "",
         "bytes",
         "per triangle"
@@ -63,9 +63,9 @@ pub fn table(
     }
     let _ = if structure.kind().is_some() {
         let Shape { depth, nodes, .. } = Shape::of(structure);
-        writeln!(text, "worst case of a ray: depth {depth}, {} nodes", count(nodes))
+        writeln!(text, "worst case of a ray: depth {depth}, {}", things(nodes, "node", "nodes"))
     } else {
-        writeln!(text, "worst case of a ray: {} triangles tested", count(triangles))
+        writeln!(text, "worst case of a ray: {} tested", things(triangles, "triangle", "triangles"))
     };
     Ok(text)
 }

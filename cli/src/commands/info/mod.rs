@@ -11,8 +11,8 @@ use crate::{
     chip::Chip,
     failure::Failure,
     progress::Progress,
-    scene::{Anatomy, Built, Instancing, Shape, Source, StructureArgs, View, broken},
-    units::count,
+    scene::{Anatomy, Built, Choice, Instancing, Shape, Source, StructureArgs, View, broken},
+    units::{count, things},
 };
 
 /// Describe a mesh, an asset or a world
@@ -21,6 +21,7 @@ use crate::{
 /// structure, which is built first for a mesh, triangles and bytes with and without instancing (glTF can place a mesh
 /// several times), and the bytes of an asset's sections; for a world of placed meshes what it places, part by part.
 #[derive(Debug, clap::Args)]
+#[command(mut_arg("structure", |structure| structure.help(Choice::help("primitives") + " [default: the asset's own, or auto]")))]
 #[command(after_help = "Examples: hitscan info bunny.obj.gz\n          hitscan info robot.hits --target m0")]
 pub struct Info {
     /// Mesh (.obj, .stl, .ply, .gltf, .glb, each also with .gz), baked asset or world (.toml)
@@ -60,8 +61,11 @@ impl Info {
             match on_lattice(&source) {
                 Some(mesh) => predict(&mut text, chip, &built, &mesh, asset)?,
                 None if view.soup.is_some() && self.structure.structure.is_none() => {
-                    let what = format!("{}: what a soup takes on a chip is not known", self.model.display());
-                    return Err(Failure::new(what, "name a --structure for its triangles"));
+                    line(
+                        &mut text,
+                        "unknown",
+                        format!("what a soup takes on {}: name a --structure for its triangles", chip.phrase()),
+                    );
                 }
                 None => predict(&mut text, chip, &built, &view.mesh, asset)?,
             }
@@ -102,9 +106,15 @@ impl Info {
         let flat = bytes_of(&view.mesh) + built.bytes();
         let (unique, bytes) = match instancing {
             None => (format!("{}, each placed once", count(placed)), flat),
-            Some(Instancing { parts, placements, unique, bytes }) => {
-                (format!("{} in {parts} parts, placed {} times", count(unique), count(placements)), bytes)
-            }
+            Some(Instancing { parts, placements, unique, bytes }) => (
+                format!(
+                    "{} in {}, placed {}",
+                    count(unique),
+                    things(parts, "part", "parts"),
+                    things(placements, "time", "times")
+                ),
+                bytes,
+            ),
         };
         line(text, "unique triangles", unique);
         line(text, "placed triangles", count(placed));

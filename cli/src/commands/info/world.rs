@@ -6,7 +6,7 @@ use super::{super::line, describe_sections, describe_shape};
 use crate::{
     failure::Failure,
     scene::{Source, StructureArgs, broken},
-    units::count,
+    units::{count, things},
 };
 
 /// Describes scenes that are placed: all of them together, then each by itself.
@@ -20,7 +20,7 @@ pub fn describe(
     // This checks everything.
     source.with_subject(path, structure, false, |subject| {
         let bounds = subject.scene.bounds();
-        line(text, "placed triangles", subject.size());
+        line(text, "in all", subject.size());
         line(text, "bounds", format!("{} to {}", bounds.min, bounds.max));
         line(text, "size", bounds.size());
         Ok(())
@@ -32,7 +32,7 @@ pub fn describe(
         let mesh: Mesh<'_> = part.read().map_err(broken)?;
         let times = placed.iter().filter(|instance| instance.scene() as usize == number).count();
         let bytes = count(size_of_val(part.as_words()));
-        line(text, &format!("part {number}"), format!("placed {} times, {bytes} bytes", count(times)));
+        line(text, &format!("part {number}"), format!("placed {}, {bytes} bytes", things(times, "time", "times")));
         describe_level(text, &part.read().map_err(broken)?, "triangles", mesh.len() as usize);
     }
     describe_sections(text, asset);
