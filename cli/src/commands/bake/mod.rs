@@ -59,15 +59,16 @@ pub struct Bake {
     /// Take the structure and preset with the fewest instructions per ray on this chip, by counts and a measured table
     #[arg(short, long, value_name = "CHIP")]
     target: Option<Chip>,
-    /// Keep the triangles' numbers where a structure (bvh, dual-split) puts them into another order, for 4 to 8 bytes each
+    /// Keep the triangles' numbers where a structure (bvh, dual-split) or --meshlets puts them into another order, for 4 to 8
+    /// bytes each
     #[arg(long)]
     keep_numbers: bool,
     /// Put the vertices on a lattice of 16 bits per coordinate: 6 bytes each instead of 12; with kdtree-compact or dual-split,
     /// but not with the default structure, it can be asked in whole numbers (`LatticeScene`), for chips without FPU
     #[arg(long)]
     lattice: bool,
-    /// Store corners in 3 bytes a triangle instead of 6 or 12, for 3 % more instructions per ray; triangles that follow one
-    /// another should be neighbours, as in most models, or vertices are there several times
+    /// Store corners in 3 bytes a triangle instead of 6 or 12, for 3 % more instructions per ray; neighbours are
+    /// put one after the other, so that numbers change without --keep-numbers, and some vertices are there several times
     #[arg(long)]
     meshlets: bool,
     /// Store the vertices' normals, in 2 bytes each: triangles are shaded as if they were curved, but for sharp edges
