@@ -101,7 +101,7 @@ fn what_cannot_be_placed() {
 #[test]
 fn what_is_no_asset() {
     says(Asset::from_words(&[7; 3]).unwrap_err(), "the asset has 12 bytes, 24 were expected");
-    says(Asset::open(&[0; 14]).unwrap_err(), "the asset has 14 bytes, 12 were expected");
+    says(Asset::open(&[0; 14]).unwrap_err(), "the asset has 14 bytes, 24 were expected");
     let errors = [
         (AssetError::Misaligned, "the asset does not lie at a multiple of 4 bytes"),
         (AssetError::Magic { found: 0xBAD }, "not an asset: it begins with 0x00000bad"),
