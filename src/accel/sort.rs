@@ -102,7 +102,7 @@ mod tests {
                 let mut keys: Vec<u32> = (0..len).map(|_| random.below(most)).collect();
                 let mut expected = keys.clone();
                 expected.sort_unstable();
-                sort(&mut keys, &mut std::vec![7; len + 5]);
+                sort(&mut keys, &mut std::vec![7; expected.len() + 5]);
                 assert_eq!(keys, expected);
             }
         }
