@@ -11,6 +11,9 @@ mod input;
 #[allow(dead_code, unused_imports)]
 #[path = "../../cli/src/model/mod.rs"]
 mod model;
+#[allow(dead_code)]
+#[path = "../../cli/src/units.rs"]
+mod units;
 
 /// Files to write to, one for each format.
 static FILES: LazyLock<[PathBuf; 6]> = LazyLock::new(|| {
