@@ -3,7 +3,6 @@
 //! A structure is a small `Copy` view of words. It answers a ray with a [`Traversal`], a cursor that yields leaves; the
 //! queries of [`Scene`](crate::Scene) are short shells over it, written once for all structures.
 
-mod beam;
 mod bounded;
 pub mod bvh;
 mod counted;
@@ -23,6 +22,7 @@ pub(crate) mod segment;
 mod slope;
 mod sort;
 mod structure;
+mod sweep;
 
 pub use bounded::{Bounded, BoundedTraversal};
 pub use bvh::Bvh;

@@ -4,7 +4,7 @@ use crate::{
     math::{greatest, least},
 };
 
-/// A node, and the part of a ray that lies in its cell.
+/// A node, and the part of a ray that lies in its cell; of a bundle, from the earliest entry of any ray to the latest exit.
 ///
 /// (The entry cannot be had from the exit of the cell just left: a ray in a plane is in both cells all the time.)
 #[derive(Clone, Copy, Debug)]

@@ -134,7 +134,6 @@ mod tests {
     use std::{vec, vec::Vec};
 
     use super::*;
-    use crate::testing::cases;
 
     /// The threshold of a pixel in Bayer's matrix of 8 x 8, by its definition: bits of x ^ y and y, reversed.
     fn threshold(x: u32, y: u32) -> u32 {
@@ -157,9 +156,7 @@ mod tests {
 
     #[test]
     fn each_pixel_comes_once_and_every_block_covers_what_is_its() {
-        let large = |(width, height): &(u32, u32)| width * height > cases(4_000_000);
-        let sizes = [(1, 1), (7, 33), (8, 8), (65, 40), (0, 5), (5, 0), (33, 1), (130, 70)];
-        for (width, height) in sizes.into_iter().filter(|size| !large(size)) {
+        for (width, height) in [(1, 1), (7, 33), (8, 8), (65, 40), (0, 5), (5, 0), (33, 1), (130, 70)] {
             let mut seen = vec![0_u8; (width * height) as usize];
             let mut shown = vec![(u32::MAX, u32::MAX); seen.len()];
             let mut pixels = Interlaced::new(width, height);

@@ -29,8 +29,9 @@ pub use traverse::BvhTraversal;
 use self::node::{Link, Node, PAIR_WORDS, Pair};
 use super::{
     Accelerator, Cell, Entries, Entry, Hierarchy, Inside, Leaf,
-    beam::{Ahead, Beam, sweep},
     leaf::References,
+    segment::Segment,
+    sweep::{Ahead, sweep},
 };
 use crate::{
     arena::Arena,
@@ -183,8 +184,8 @@ impl<'a> Bvh<'a> {
 
     /// When rays are in a box.
     #[inline(always)]
-    fn beam(&self, node: &Node, bundle: &Bundle) -> Option<Beam> {
-        Beam::within(&node.planes.bounds(&self.lattice), node.link.to_bits(), bundle)
+    fn segment(&self, node: &Node, bundle: &Bundle) -> Option<Segment> {
+        Segment::of_bundle(&node.planes.bounds(&self.lattice), node.link.to_bits(), bundle)
     }
 
     /// Of a box: the planes on which nodes stand.
@@ -215,13 +216,13 @@ impl<'a> Accelerator for Bvh<'a> {
     }
 
     fn sweep(&self, bundle: &Bundle, mut visit: impl FnMut(Leaf<'a>) -> f32) -> bool {
-        let look = |beam: Beam| {
-            let link = Link::from_bits(beam.node);
+        let look = |segment: Segment| {
+            let link = Link::from_bits(segment.node);
             if link.is_leaf() {
                 return Ahead::Primitives;
             }
             let Some(pair) = self.pairs.get(link.number() as usize) else { return Ahead::Nothing };
-            let [left, right] = pair.each_ref().map(|node| self.beam(node, bundle));
+            let [left, right] = pair.each_ref().map(|node| self.segment(node, bundle));
             match (left, right) {
                 (Some(left), Some(right)) if left.enter > right.enter => Ahead::Two(right, left),
                 (Some(left), Some(right)) => Ahead::Two(left, right),
@@ -229,7 +230,7 @@ impl<'a> Accelerator for Bvh<'a> {
                 (None, None) => Ahead::Nothing,
             }
         };
-        let whole = Beam::within(&self.bounds, self.root.to_bits(), bundle);
+        let whole = Segment::of_bundle(&self.bounds, self.root.to_bits(), bundle);
         sweep::<MAX_DEPTH>(whole, look, |node| {
             let link = Link::from_bits(node);
             visit(Leaf::of(self.references, link.number(), link.count()))

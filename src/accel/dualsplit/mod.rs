@@ -29,8 +29,9 @@ use self::{
 };
 use super::{
     Accelerator, Cell, Entries, Entry, Hierarchy, Inside, Leaf,
-    beam::{Ahead, Beam, sweep},
     leaf::References,
+    segment::Segment,
+    sweep::{Ahead, sweep},
 };
 use crate::{
     arena::{Arena, Full},
@@ -217,15 +218,15 @@ impl<'a, const HEIGHT: usize> DualSplit<'a, HEIGHT> {
 
     /// What the rays of a bundle find in a cell.
     #[inline(always)]
-    fn ahead(&self, beam: Beam, bundle: &Bundle) -> Ahead {
-        let Some(&word) = self.nodes.get(beam.node as usize) else { return Ahead::Nothing };
+    fn ahead(&self, segment: Segment, bundle: &Bundle) -> Ahead {
+        let Some(&word) = self.nodes.get(segment.node as usize) else { return Ahead::Nothing };
         let Some(kind) = Head::from_word(word).kind() else { return Ahead::Nothing };
-        let planes = self.nodes.get(beam.node as usize + 1).copied().unwrap_or(0);
+        let planes = self.nodes.get(segment.node as usize + 1).copied().unwrap_or(0);
         let [first, second] = [planes & Block::LAST, planes >> 16];
-        let next = beam.at(beam.node + 2);
-        let cut = |beam: Beam, Face { axis, upper }: Face, plane: u32| {
+        let next = segment.at(segment.node + 2);
+        let cut = |segment: Segment, Face { axis, upper }: Face, plane: u32| {
             let plane = self.lattice.position(axis, plane);
-            if upper { beam.below(axis, plane, bundle) } else { beam.above(axis, plane, bundle) }
+            if upper { segment.below(axis, plane, bundle) } else { segment.above(axis, plane, bundle) }
         };
         match kind {
             Kind::Leaf { .. } => Ahead::Primitives,
@@ -236,7 +237,7 @@ impl<'a, const HEIGHT: usize> DualSplit<'a, HEIGHT> {
             }
             Kind::Split { axis, right } => {
                 let (left, _) = cut(next, Face { axis, upper: true }, first);
-                let (right, descends) = cut(beam.at(right), Face { axis, upper: false }, second);
+                let (right, descends) = cut(segment.at(right), Face { axis, upper: false }, second);
                 if descends { Ahead::of(right, left) } else { Ahead::of(left, right) }
             }
         }
@@ -277,10 +278,10 @@ impl<'a, const HEIGHT: usize> Accelerator for DualSplit<'a, HEIGHT> {
     }
 
     fn sweep(&self, bundle: &Bundle, mut visit: impl FnMut(Leaf<'a>) -> f32) -> bool {
-        let whole = Beam::within(&self.bounds, 0, bundle);
+        let whole = Segment::of_bundle(&self.bounds, 0, bundle);
         sweep::<HEIGHT>(
             whole,
-            |beam| self.ahead(beam, bundle),
+            |segment| self.ahead(segment, bundle),
             |node| {
                 let head = self.nodes.get(node as usize).map_or(Head::leaf(0, 0), |&word| Head::from_word(word));
                 visit(Leaf::of(self.references, head.first(), head.count()))

@@ -1,9 +1,6 @@
 use super::node::Side;
 use crate::{
-    accel::{
-        Entries, Entry,
-        beam::{Ahead, Beam},
-    },
+    accel::{Entries, Entry, segment::Segment, sweep::Ahead},
     geometry::{Aabb, Axis, Bundle},
 };
 
@@ -42,9 +39,9 @@ enum Found {
     /// Nothing, or nothing that its rays meet.
     Nothing,
     /// What counts is on one side.
-    Half(Beam, Planes, Side),
+    Half(Segment, Planes, Side),
     /// It may be on both, and the rays are on the right one first.
-    Halves { halves: [Beam; 2], planes: Planes, descends: bool },
+    Halves { halves: [Segment; 2], planes: Planes, descends: bool },
 }
 
 /// Nodes that are visited to tell whether a cell is empty; it counts as one that is not if they, or what may wait, do not
@@ -55,7 +52,7 @@ const PATIENCE: u32 = 64;
 ///
 /// Where they are on both sides of a plane, and there is nothing for them on one, the cell is on the other.
 pub(super) fn entries(mut bounds: Aabb, bundle: &Bundle, open: impl Fn(u32) -> Option<Opened>) -> Entries {
-    let Some(mut at) = Beam::within(&bounds, 0, bundle) else { return Entries::default() };
+    let Some(mut at) = Segment::of_bundle(&bounds, 0, bundle) else { return Entries::default() };
     loop {
         let (next, planes, side) = match look(bundle, at, &open) {
             Found::Nothing => return Entries::default(),
@@ -80,12 +77,12 @@ pub(super) fn entries(mut bounds: Aabb, bundle: &Bundle, open: impl Fn(u32) -> O
 const WAITING: usize = 8;
 
 /// Whether there certainly is nothing in a cell that the rays can meet.
-fn is_empty(bundle: &Bundle, at: Beam, open: impl Fn(u32) -> Option<Opened>) -> bool {
-    let mut waiting: heapless::Vec<Beam, WAITING> = heapless::Vec::new();
+fn is_empty(bundle: &Bundle, at: Segment, open: impl Fn(u32) -> Option<Opened>) -> bool {
+    let mut waiting: heapless::Vec<Segment, WAITING> = heapless::Vec::new();
     let mut next = Some(at);
     for _ in 0..PATIENCE {
-        let Some(beam) = next else { return true };
-        next = match look(bundle, beam, &open) {
+        let Some(segment) = next else { return true };
+        next = match look(bundle, segment, &open) {
             Found::Primitives => return false,
             Found::Nothing => waiting.pop(),
             Found::Half(half, ..) => Some(half),
@@ -102,14 +99,14 @@ fn is_empty(bundle: &Bundle, at: Beam, open: impl Fn(u32) -> Option<Opened>) -> 
 
 /// One step of all rays at once.
 #[inline(always)]
-fn look(bundle: &Bundle, beam: Beam, open: impl Fn(u32) -> Option<Opened>) -> Found {
-    let (planes, left, right, empty) = match open(beam.node) {
+fn look(bundle: &Bundle, segment: Segment, open: impl Fn(u32) -> Option<Opened>) -> Found {
+    let (planes, left, right, empty) = match open(segment.node) {
         Some(Opened::Parted { planes, left, right, empty }) => (planes, left, right, empty),
         Some(Opened::Leaf { is_empty: false }) => return Found::Primitives,
         _ => return Found::Nothing,
     };
-    let (left, _) = beam.at(left).below(planes.axis, planes.end, bundle);
-    let (right, descends) = beam.at(right).above(planes.axis, planes.begin, bundle);
+    let (left, _) = segment.at(left).below(planes.axis, planes.end, bundle);
+    let (right, descends) = segment.at(right).above(planes.axis, planes.begin, bundle);
     let without_left = empty == Some(Side::Left) || left.is_missed();
     let without_right = empty == Some(Side::Right) || right.is_missed();
     match (without_left, without_right) {
@@ -122,8 +119,8 @@ fn look(bundle: &Bundle, beam: Beam, open: impl Fn(u32) -> Option<Opened>) -> Fo
 
 /// The same in the order of the rays.
 #[inline(always)]
-pub(super) fn ahead(bundle: &Bundle, beam: Beam, open: impl Fn(u32) -> Option<Opened>) -> Ahead {
-    match look(bundle, beam, open) {
+pub(super) fn ahead(bundle: &Bundle, segment: Segment, open: impl Fn(u32) -> Option<Opened>) -> Ahead {
+    match look(bundle, segment, open) {
         Found::Primitives => Ahead::Primitives,
         Found::Nothing => Ahead::Nothing,
         Found::Half(half, ..) => Ahead::One(half),

@@ -26,9 +26,7 @@ use self::{
     node::{Kind, Node, Side},
 };
 use super::{
-    Accelerator, Cell, Entries, Entry, Hierarchy, Inside, Leaf,
-    beam::{Beam, sweep},
-    leaf::References,
+    Accelerator, Cell, Entries, Entry, Hierarchy, Inside, Leaf, leaf::References, segment::Segment, sweep::sweep,
 };
 use crate::{
     arena::Arena,
@@ -232,8 +230,8 @@ impl<'a, const HEIGHT: usize> Accelerator for KdTree<'a, HEIGHT> {
             Some(Kind::Leaf { first, count }) => visit(Leaf::of(self.references, first, count)),
             _ => f32::NEG_INFINITY,
         };
-        let whole = Beam::within(&self.bounds, 0, bundle);
-        sweep::<HEIGHT>(whole, |beam| enter::ahead(bundle, beam, |node| self.opened(node)), visit);
+        let whole = Segment::of_bundle(&self.bounds, 0, bundle);
+        sweep::<HEIGHT>(whole, |segment| enter::ahead(bundle, segment, |node| self.opened(node)), visit);
         true
     }
 

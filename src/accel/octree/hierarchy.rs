@@ -1,9 +1,6 @@
 use super::{Octree, node::behind};
 use crate::{
-    accel::{
-        Cell, Hierarchy, Inside, Leaf,
-        beam::{Ahead, Beam},
-    },
+    accel::{Cell, Hierarchy, Inside, Leaf, segment::Segment, sweep::Ahead},
     geometry::{Aabb, Axis, Bundle},
 };
 
@@ -17,7 +14,7 @@ pub struct Octants {
 }
 
 impl Octants {
-    /// Both in a word, as what a [`Beam`] knows a node by: words have 24 bits.
+    /// Both in a word, as what a [`Segment`] knows a node by: words have 24 bits.
     pub(super) const fn to_bits(self) -> u32 {
         self.octants << 24 | self.word
     }
@@ -36,8 +33,8 @@ impl Octree<'_> {
     /// What the rays of a bundle find in some octants: across one plane after the other, so that at most three parts of a node
     /// wait.
     #[inline(always)]
-    pub(super) fn ahead(&self, beam: Beam, bundle: &Bundle) -> Ahead {
-        let Octants { word, octants } = Octants::from_bits(beam.node);
+    pub(super) fn ahead(&self, segment: Segment, bundle: &Bundle) -> Ahead {
+        let Octants { word, octants } = Octants::from_bits(segment.node);
         let Some(node) = self.node(word) else { return Ahead::Nothing };
         if node.is_leaf() {
             return Ahead::Primitives;
@@ -45,9 +42,9 @@ impl Octree<'_> {
         let Some(point) = self.point(node.block()) else { return Ahead::Nothing };
         if octants.is_power_of_two() {
             let child = self.whole(node.child(octants.trailing_zeros()));
-            return child.map_or(Ahead::Nothing, |child| Ahead::One(beam.at(child.to_bits())));
+            return child.map_or(Ahead::Nothing, |child| Ahead::One(segment.at(child.to_bits())));
         }
-        let part = |octants| beam.at(Octants { word, octants }.to_bits());
+        let part = |octants| segment.at(Octants { word, octants }.to_bits());
         for axis in Axis::ALL {
             let behind = octants & behind(axis);
             let before = octants & !behind;

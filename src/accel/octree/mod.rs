@@ -23,10 +23,7 @@ pub use options::{Options, Split};
 pub use traverse::OctreeTraversal;
 
 use self::node::{Node, Point};
-use super::{
-    Accelerator, Cell, Hierarchy, Inside, Leaf, MAX_LEVELS,
-    beam::{Beam, sweep},
-};
+use super::{Accelerator, Cell, Hierarchy, Inside, Leaf, MAX_LEVELS, segment::Segment, sweep::sweep};
 use crate::{
     arena::Arena,
     asset::{Asset, Stored},
@@ -213,10 +210,10 @@ impl<'a> Accelerator for Octree<'a> {
     }
 
     fn sweep(&self, bundle: &Bundle, mut visit: impl FnMut(Leaf<'a>) -> f32) -> bool {
-        let whole = self.whole(0).and_then(|whole| Beam::within(&self.bounds, whole.to_bits(), bundle));
+        let whole = self.whole(0).and_then(|whole| Segment::of_bundle(&self.bounds, whole.to_bits(), bundle));
         sweep::<{ 3 * MAX_DEPTH }>(
             whole,
-            |beam| self.ahead(beam, bundle),
+            |segment| self.ahead(segment, bundle),
             |bits| {
                 let node = self.node(Octants::from_bits(bits).word);
                 node.map_or(f32::NEG_INFINITY, |node| visit(node.leaf_in(self.body, self.is_wide())))

@@ -195,6 +195,6 @@ mod tests {
                 }
             }
         }
-        assert!(hits > cases(50_000) && candidates < hits + hits / 8 + 8, "{hits} {candidates}");
+        assert!(hits > cases(50_000) && (cfg!(miri) || candidates < hits + hits / 8), "{hits} {candidates}");
     }
 }

@@ -24,9 +24,7 @@ use super::{
 };
 use crate::{
     accel::{
-        Accelerator, Cell, Entries, Entry, Hierarchy, Inside, Leaf,
-        beam::{Beam, sweep},
-        leaf::References,
+        Accelerator, Cell, Entries, Entry, Hierarchy, Inside, Leaf, leaf::References, segment::Segment, sweep::sweep,
     },
     arena::Arena,
     asset::{Asset, Stored},
@@ -176,8 +174,8 @@ impl<'a, const HEIGHT: usize> Accelerator for CompactKdTree<'a, HEIGHT> {
             Some(Kind::Leaf { first, count, .. }) => visit(Leaf::of(self.references, first, count)),
             _ => f32::NEG_INFINITY,
         };
-        let whole = Beam::within(&self.bounds, 0, bundle);
-        sweep::<HEIGHT>(whole, |beam| enter::ahead(bundle, beam, |node| self.opened(node)), visit);
+        let whole = Segment::of_bundle(&self.bounds, 0, bundle);
+        sweep::<HEIGHT>(whole, |segment| enter::ahead(bundle, segment, |node| self.opened(node)), visit);
         true
     }
 

@@ -1,15 +1,8 @@
+use super::segment::Segment;
 use crate::{
     geometry::{Aabb, Axis, Bundle},
     math::{greatest, least},
 };
-
-/// A node, and when rays of a bundle can be in its cell: from the earliest entry of any to the latest exit.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Beam {
-    pub(super) node: u32,
-    pub(super) enter: f32,
-    pub(super) exit: f32,
-}
 
 /// What a bundle finds in a cell.
 #[derive(Clone, Copy, Debug)]
@@ -19,15 +12,15 @@ pub(super) enum Ahead {
     /// Nothing, or nothing that its rays meet.
     Nothing,
     /// One cell.
-    One(Beam),
+    One(Segment),
     /// Two, of which the first is met first.
-    Two(Beam, Beam),
+    Two(Segment, Segment),
 }
 
-impl Beam {
-    /// In a box; none if no ray meets it.
+impl Segment {
+    /// When rays of a bundle are in a box; none if no ray meets it.
     #[inline(always)]
-    pub(super) fn within(bounds: &Aabb, node: u32, bundle: &Bundle) -> Option<Self> {
+    pub(super) fn of_bundle(bounds: &Aabb, node: u32, bundle: &Bundle) -> Option<Self> {
         let (enter, exit) = bundle.interval(bounds)?;
         Some(Self { node, enter, exit })
     }
@@ -74,7 +67,7 @@ impl Beam {
 impl Ahead {
     /// The parts of a cell that rays meet.
     #[inline(always)]
-    pub(super) fn of(near: Beam, far: Beam) -> Self {
+    pub(super) fn of(near: Segment, far: Segment) -> Self {
         match (near.is_missed(), far.is_missed()) {
             (false, false) => Self::Two(near, far),
             (false, true) => Self::One(near),
@@ -90,19 +83,19 @@ impl Ahead {
 /// One walk for all rays.
 #[inline(always)]
 pub(super) fn sweep<const HEIGHT: usize>(
-    whole: Option<Beam>,
-    look: impl Fn(Beam) -> Ahead,
+    whole: Option<Segment>,
+    look: impl Fn(Segment) -> Ahead,
     mut visit: impl FnMut(u32) -> f32,
 ) {
-    let mut waiting: heapless::Vec<Beam, HEIGHT> = heapless::Vec::new();
+    let mut waiting: heapless::Vec<Segment, HEIGHT> = heapless::Vec::new();
     let (mut next, mut end) = (whole, f32::INFINITY);
-    while let Some(beam) = next {
+    while let Some(segment) = next {
         // Written so that NaN visits.
-        if beam.enter > end {
+        if segment.enter > end {
             next = waiting.pop();
             continue;
         }
-        next = match look(beam) {
+        next = match look(segment) {
             Ahead::One(part) => Some(part),
             Ahead::Two(near, far) => {
                 // It cannot fail, because no structure is deeper than its stack.
@@ -110,7 +103,7 @@ pub(super) fn sweep<const HEIGHT: usize>(
                 Some(near)
             }
             Ahead::Primitives => {
-                end = visit(beam.node);
+                end = visit(segment.node);
                 waiting.pop()
             }
             Ahead::Nothing => waiting.pop(),
