@@ -21,7 +21,7 @@ const NOTHING: Hit = Hit { t: f32::MAX, primitive: u32::MAX };
 
 /// Triangles after which it is asked whether rays may hit half of them: where triangles are smaller than pixels, walks ray by
 /// ray see fewer.
-const PATIENCE: u32 = 48;
+const PATIENCE: u32 = 128;
 
 impl ItemBuffer {
     /// Of rays that hit nothing.

@@ -88,10 +88,12 @@ fn main() -> ! {
     println!("triangles structure                        structure all in closest     any bytes");
     let mut same = true;
     for contestant in black_box(LATTICES) {
-        // Stacks as high as the trees over 5,000 triangles are deep.
-        same &= match contestant.name {
-            "lattice-kdtree-compact small" => measure::<CompactKdTree<20>>(&counter, contestant),
-            "lattice-kdtree-compact balanced" => measure::<CompactKdTree<24>>(&counter, contestant),
+        // Stacks as high as the trees are deep.
+        same &= match (contestant.name, contestant.triangles) {
+            ("lattice-kdtree-compact small", _) => measure::<CompactKdTree<20>>(&counter, contestant),
+            ("lattice-kdtree-compact balanced", _) => measure::<CompactKdTree<24>>(&counter, contestant),
+            ("lattice-dual-split fast", 1000) => measure::<DualSplit<12>>(&counter, contestant),
+            (_, 1000) => measure::<DualSplit<11>>(&counter, contestant),
             _ => measure::<DualSplit<16>>(&counter, contestant),
         };
     }

@@ -1,6 +1,7 @@
-//! What a picture's rays take with and without tiles: instructions per pixel of 240 x 240, of the first coarse picture, and
-//! bytes of stack. Queries alone, no shading; the camera's rays and the search for entries included. Last, vertices on lattices:
-//! in floating point, and in whole numbers, which take less stack.
+//! What a picture's rays take with and without tiles: instructions per pixel of 240 x 240, and bytes of stack; and in passes, rough
+//! at first: instructions per pixel, and what of a picture's the first pass takes, in passes and in tiles. Queries alone, no
+//! shading; the camera's rays and the search for entries included. Last, vertices on lattices: in floating point, and in whole
+//! numbers, which take less stack.
 
 #![no_std]
 #![no_main]
@@ -14,18 +15,18 @@ use firmware::{
 };
 use hitscan::{
     CompactKdTree, DualSplit, Hit, LatticeMesh, Mesh, Scene,
-    accel::{Accelerator, LatticeAccelerator},
+    accel::{Accelerator, Entries, LatticeAccelerator},
     asset::Stored,
     glam::Vec3,
     query::ItemBuffer,
-    render::{Camera, Caster, Tile, Tiles},
+    render::{Camera, Caster, Interlaced, Tile, Tiles},
 };
 use semihosting::println;
 
 /// Pixels in a row, and rows.
 const SIDE: u32 = 240;
 
-/// The hits of each `stride`th pixel of a tile, in each `stride`th row, one by one.
+/// The hits of a tile's pixels, one by one.
 #[inline(never)]
 fn plain<S: Caster>(scene: &S, camera: &Camera, tile: Tile, hits: &mut [Option<Hit>]) {
     for ((x, y), hit) in tile.pixels().zip(hits) {
@@ -39,24 +40,44 @@ fn tiled<S: Caster>(scene: &S, camera: &Camera, tile: Tile, items: &mut ItemBuff
     let pencil = camera.pencil(&tile, SIDE, SIDE);
     let at_once = pencil.as_ref().is_some_and(|pencil| scene.closest_hits(pencil, items));
     if !at_once {
-        begun(scene, camera, tile, 1, hits);
+        begun(scene, camera, tile, hits);
     }
     at_once
 }
 
 /// The same begun together.
 #[inline(never)]
-fn begun<S: Caster>(scene: &S, camera: &Camera, tile: Tile, stride: usize, hits: &mut [Option<Hit>]) {
+fn begun<S: Caster>(scene: &S, camera: &Camera, tile: Tile, hits: &mut [Option<Hit>]) {
     let entries = camera.bundle(&tile, SIDE, SIDE).map(|bundle| scene.enter(&bundle));
     let Some(entries) = entries.filter(|entries| !entries.is_empty()) else { return hits.fill(None) };
-    let pixels = (tile.y..tile.y + tile.height)
-        .step_by(stride)
-        .flat_map(|y| (tile.x..tile.x + tile.width).step_by(stride).map(move |x| (x, y)));
-    let whole = entries.is_everything();
-    for ((x, y), hit) in pixels.zip(hits) {
-        let ray = camera.ray(x as f32 + 0.5, y as f32 + 0.5, SIDE, SIDE);
-        *hit = if whole { scene.closest_hit(&ray, 0) } else { scene.closest_hit_from(&entries, &ray) };
+    for (pixel, hit) in tile.pixels().zip(hits) {
+        *hit = hit_from(scene, camera, &entries, pixel);
     }
+}
+
+/// The hit of a pixel.
+#[inline(always)]
+fn hit_from<S: Caster>(scene: &S, camera: &Camera, entries: &Entries, (x, y): (u32, u32)) -> Option<Hit> {
+    let ray = camera.ray(x as f32 + 0.5, y as f32 + 0.5, SIDE, SIDE);
+    if entries.is_everything() { scene.closest_hit(&ray, 0) } else { scene.closest_hit_from(entries, &ray) }
+}
+
+/// How many of the first pixels in passes hit something, begun together where they are neighbours.
+#[inline(never)]
+fn in_passes<S: Caster>(scene: &S, camera: &Camera, count: usize) -> u32 {
+    let (mut hits, mut begun) = (0, None);
+    let mut pixels = Interlaced::new(SIDE, SIDE);
+    for _ in 0..count {
+        let Some(Tile { x, y, .. }) = pixels.next() else { break };
+        let tile = pixels.tile();
+        if begun.as_ref().is_none_or(|(at_hand, _)| *at_hand != tile) {
+            begun = camera.bundle(&tile, SIDE, SIDE).map(|bundle| (tile, scene.enter(&bundle)));
+        }
+        if let Some((_, entries)) = begun.as_ref().filter(|(_, entries)| !entries.is_empty()) {
+            hits += u32::from(hit_from(scene, camera, entries, (x, y)).is_some());
+        }
+    }
+    hits
 }
 
 /// Prints the line of a contestant; whether tiles change no bit.
@@ -81,7 +102,7 @@ fn measure_whole<A: LatticeAccelerator + Stored<'static>>(counter: &Counter, con
 fn compare<S: Caster>(counter: &Counter, kind: &str, name: &str, scene: &S) -> bool {
     let camera = Camera::framing(&scene.bounds(), Vec3::new(0.2, 0.3, -1.0), Vec3::Y);
     let mut answers = [Answer::NONE; 2];
-    let (mut alone, mut together, mut coarse, mut stack) = (0, 0, 0, 0);
+    let (mut alone, mut together, mut stacks) = (0, 0, [0; 2]);
     let (mut items, mut hits) = (ItemBuffer::new(), [None; 64]);
     for tile in Tiles::new(SIDE, SIDE, 8, 8) {
         alone += counter.instructions(|| plain(scene, &camera, tile, &mut hits));
@@ -93,35 +114,50 @@ fn compare<S: Caster>(counter: &Counter, kind: &str, name: &str, scene: &S) -> b
         }
         hits.into_iter().for_each(|hit| answers[1].add(hit));
         if tile.x == tile.y {
-            stack = stack.max(stack_of(&mut || _ = tiled(scene, &camera, tile, &mut items, &mut hits)));
+            let [alone, together] = &mut stacks;
+            *alone = stack_of(&mut || plain(scene, &camera, tile, &mut hits)).max(*alone);
+            *together = stack_of(&mut || _ = tiled(scene, &camera, tile, &mut items, &mut hits)).max(*together);
         }
     }
-    for tile in Tiles::new(SIDE, SIDE, 64, 64) {
-        coarse += counter.instructions(|| begun(scene, &camera, tile, 8, &mut hits));
-    }
+    let pixels = (SIDE * SIDE) as usize;
+    let [first, passes] = [pixels / 64, pixels].map(|count| {
+        let mut hits = 0;
+        let instructions = counter.instructions(|| hits = in_passes(scene, &camera, count));
+        (instructions, hits)
+    });
+    let same = answers[0] == answers[1] && answers[0].hits == passes.1;
+    let (first, passes) = (first.0, passes.0);
     let filled = answers[0].hits * 100 / answers[0].rays;
-    let share = (coarse * 1000 / together) as f32 / 10.0;
-    let [alone, together] = [alone, together].map(|all| all / u64::from(SIDE * SIDE));
-    println!("{kind}{name:width$} {filled:6} {alone:6} {together:6} {share:7.1} {stack:6}", width = 36 - kind.len());
-    answers[0] == answers[1]
+    let [of_passes, of_tiles] = [passes, together].map(|all| (first * 1000 / all) as f32 / 10.0);
+    let [alone, together, passes] = [alone, together, passes].map(|all| all / pixels as u64);
+    let ([least, most], width) = (stacks, 36 - kind.len());
+    println!(
+        "{kind}{name:width$} {filled:6} {alone:6} {least:6} {together:6} {most:6} {passes:7} {of_passes:5.1} {of_tiles:5.1}"
+    );
+    same
 }
 
 #[entry]
 fn main() -> ! {
     let counter = Counter::new();
-    println!("                                     filled instructions    coarse  stack");
-    println!("structure                                 %  alone  tiled        %  bytes");
+    println!("                                     filled     alone      in tiles in passes, the first of  ");
+    println!("structure                                 %        stack         stack             %  tiles %");
     let mut same = true;
     for contestant in black_box(CONTEST).iter().filter(|contestant| contestant.triangles == 5000) {
         same &= for_structure!(contestant, measure)(&counter, contestant);
     }
     for contestant in black_box(LATTICES).iter().filter(|contestant| contestant.triangles == 5000) {
-        same &= match contestant.name.split(' ').next() {
-            Some("lattice-kdtree-compact") => {
-                measure_floats::<CompactKdTree>(&counter, contestant)
-                    & measure_whole::<CompactKdTree>(&counter, contestant)
+        // Stacks as high as the trees are deep.
+        same &= match contestant.name {
+            "lattice-kdtree-compact small" => {
+                measure_floats::<CompactKdTree<20>>(&counter, contestant)
+                    & measure_whole::<CompactKdTree<20>>(&counter, contestant)
             }
-            _ => measure_whole::<DualSplit>(&counter, contestant),
+            "lattice-kdtree-compact balanced" => {
+                measure_floats::<CompactKdTree<24>>(&counter, contestant)
+                    & measure_whole::<CompactKdTree<24>>(&counter, contestant)
+            }
+            _ => measure_whole::<DualSplit<16>>(&counter, contestant),
         };
     }
     finish(same)
