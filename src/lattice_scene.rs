@@ -171,9 +171,11 @@ impl<A: LatticeAccelerator, P: LatticeTriangles> LatticeScene<A, P> {
     #[must_use]
     #[inline(never)]
     pub fn any_hit_along(&self, ray: &LatticeRay) -> bool {
+        let (from, until) = ray.depths;
         let mut walk = self.accelerator.walk();
-        while let Some(mut leaf) = walk.next_leaf(ray, ray.depths.1 >> 8) {
-            if leaf.any(|index| self.hits(index, ray)) {
+        while let Some(mut leaf) = walk.next_leaf(ray, until >> 8) {
+            let is_hit = |Depth { depth, front }| self.shows(front) && from <= depth && depth <= until;
+            if leaf.any(|index| self.crossing(index, ray).is_some_and(is_hit)) {
                 return true;
             }
         }
@@ -184,13 +186,6 @@ impl<A: LatticeAccelerator, P: LatticeTriangles> LatticeScene<A, P> {
     #[inline(never)] // Not within the walk: each would keep the other's numbers on the stack.
     fn crossing(&self, index: u32, ray: &LatticeRay) -> Option<Depth> {
         ray.sight.crossing(self.visible(index, ray.mask)?)
-    }
-
-    /// Whether the ray hits a triangle that it sees.
-    #[inline(never)]
-    fn hits(&self, index: u32, ray: &LatticeRay) -> bool {
-        let side = self.visible(index, ray.mask).and_then(|corners| ray.sight.crosses(corners, ray.depths));
-        side.is_some_and(|front| self.shows(front))
     }
 
     /// The corners of a triangle that a ray of this mask may see.

@@ -60,23 +60,6 @@ impl Sight {
         Some(Depth { depth: self.depth(corners, &weights), front: self.is_front(&weights) })
     }
 
-    /// Whether it crosses the triangle between two depths, and from the front.
-    #[inline(always)]
-    pub(crate) fn crosses(&self, corners: Corners<'_>, (from, until): (i32, i32)) -> Option<bool> {
-        let weights = self.weights(corners)?;
-        // No depth lies outside of those of the corners: mostly that is enough to know.
-        let [.., major] = self.axes;
-        let certain = corners.into_iter().all(|corner| {
-            let depth = self.plane(i32::from(corner[major as usize]) << 8);
-            from <= depth && depth <= until
-        });
-        let within = || {
-            let depth = self.depth(corners, &weights);
-            from <= depth && depth <= until
-        };
-        (certain || within()).then(|| self.is_front(&weights))
-    }
-
     /// Whether the ray comes from the front.
     #[inline(always)]
     const fn is_front(&self, weights: &Weights) -> bool {
