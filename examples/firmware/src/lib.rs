@@ -21,7 +21,7 @@ pub use board::{Board, MEMORY_WORDS, Program, run};
 #[cfg(target_arch = "arm")]
 pub use cortex_m_rt::entry;
 pub use counter::Counter;
-pub use metal::{fault, stack_of};
+pub use metal::{fault, stack_of, stack_of_all};
 #[cfg(target_arch = "riscv32")]
 pub use riscv_rt::entry;
 

@@ -78,9 +78,18 @@ fn stack_pointer() -> usize {
     address
 }
 
-/// The stack that a call of `work` takes, in bytes: paints what lies below, and looks how far it was written.
+/// The stack that a call of `query` takes, in bytes. No interrupt takes its part, so that the counter stands still.
+pub fn stack_of(query: &mut dyn FnMut()) -> usize {
+    #[cfg(target_arch = "arm")]
+    return cortex_m::interrupt::free(|_| stack_of_all(query));
+    #[cfg(target_arch = "riscv32")]
+    stack_of_all(query)
+}
+
+/// The same of work that is counted or takes long, with what interrupts take: paints what lies below, and looks how far it
+/// was written.
 #[inline(never)]
-pub fn stack_of(work: &mut dyn FnMut()) -> usize {
+pub fn stack_of_all(work: &mut dyn FnMut()) -> usize {
     let top = stack_pointer();
     let bottom = (top - PAINTED_BYTES).max(&raw const __sheap as usize);
     let words = (bottom..top).step_by(size_of::<u32>()).map(|address| address as *mut u32);

@@ -14,7 +14,7 @@ use crate::{
     builds::{BUILDS, Build},
     camera, figure,
     hash::Hash,
-    stack_of,
+    stack_of_all,
 };
 
 /// Frames of the moving obstacle.
@@ -41,7 +41,7 @@ pub fn run(board: &mut Board) -> bool {
 fn built(build: &Build, mesh: &Mesh, arena: &mut Arena, counter: &Counter) -> bool {
     let name = build.name;
     let (mut words, mut instructions) = (None, 0);
-    let stack = stack_of(&mut || {
+    let stack = stack_of_all(&mut || {
         instructions = counter.instructions(|| words = Some((build.build)(mesh, arena)));
     });
     match words {
