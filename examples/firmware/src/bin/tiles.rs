@@ -102,7 +102,7 @@ fn measure_whole<A: LatticeAccelerator + Stored<'static>>(counter: &Counter, con
 fn compare<S: Caster>(counter: &Counter, kind: &str, name: &str, scene: &S) -> bool {
     let camera = Camera::framing(&scene.bounds(), Vec3::new(0.2, 0.3, -1.0), Vec3::Y);
     let mut answers = [Answer::NONE; 2];
-    let (mut alone, mut together, mut stacks) = (0, 0, [0; 2]);
+    let (mut alone, mut alone_stack, mut together, mut stack) = (0, 0, 0, 0);
     let (mut items, mut hits) = (ItemBuffer::new(), [None; 64]);
     for tile in Tiles::new(SIDE, SIDE, 8, 8) {
         alone += counter.instructions(|| plain(scene, &camera, tile, &mut hits));
@@ -114,27 +114,21 @@ fn compare<S: Caster>(counter: &Counter, kind: &str, name: &str, scene: &S) -> b
         }
         hits.into_iter().for_each(|hit| answers[1].add(hit));
         if tile.x == tile.y {
-            let [alone, together] = &mut stacks;
-            *alone = stack_of(&mut || plain(scene, &camera, tile, &mut hits)).max(*alone);
-            *together = stack_of(&mut || _ = tiled(scene, &camera, tile, &mut items, &mut hits)).max(*together);
+            alone_stack = alone_stack.max(stack_of(&mut || plain(scene, &camera, tile, &mut hits)));
+            stack = stack.max(stack_of(&mut || _ = tiled(scene, &camera, tile, &mut items, &mut hits)));
         }
     }
-    let pixels = (SIDE * SIDE) as usize;
-    let [first, passes] = [pixels / 64, pixels].map(|count| {
-        let mut hits = 0;
-        let instructions = counter.instructions(|| hits = in_passes(scene, &camera, count));
-        (instructions, hits)
-    });
-    let same = answers[0] == answers[1] && answers[0].hits == passes.1;
-    let (first, passes) = (first.0, passes.0);
+    let (pixels, mut hits) = ((SIDE * SIDE) as usize, 0);
+    let [first, passes] =
+        [pixels / 64, pixels].map(|count| counter.instructions(|| hits = in_passes(scene, &camera, count)));
     let filled = answers[0].hits * 100 / answers[0].rays;
     let [of_passes, of_tiles] = [passes, together].map(|all| (first * 1000 / all) as f32 / 10.0);
     let [alone, together, passes] = [alone, together, passes].map(|all| all / pixels as u64);
-    let ([least, most], width) = (stacks, 36 - kind.len());
+    let width = 36 - kind.len();
     println!(
-        "{kind}{name:width$} {filled:6} {alone:6} {least:6} {together:6} {most:6} {passes:7} {of_passes:5.1} {of_tiles:5.1}"
+        "{kind}{name:width$} {filled:6} {alone:6} {alone_stack:6} {together:6} {stack:6} {passes:7} {of_passes:5.1} {of_tiles:5.1}"
     );
-    same
+    answers[0] == answers[1] && answers[0].hits == hits
 }
 
 #[entry]
