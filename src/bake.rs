@@ -19,6 +19,7 @@
 
 mod lattice;
 mod meshlets;
+mod quads;
 
 use alloc::{vec, vec::Vec};
 
@@ -31,12 +32,13 @@ use crate::{
     error::BuildError,
     geometry::{Sphere, Triangle},
     instances::Instance,
-    primitives::{Indices, LatticeMesh, Mesh, Normals, Primitives, TexCoords, Triangles},
+    primitives::{Indices, LatticeMesh, Mesh, Meshlets, Normals, Primitives, TexCoords, Triangles},
     render::{Material, Numbers, Texture, Textures},
 };
 
 pub use lattice::{OnLattice, lattice};
 pub use meshlets::{InMeshlets, meshlets};
+pub use quads::{Pairs, pairs, quads};
 
 /// Builds a structure in as much memory as that takes; its words are for its `open`, or for [`Baker::structure`].
 ///
@@ -163,9 +165,10 @@ impl Baker {
 
     fn indices(self, indices: Indices<'_>, vertices: usize) -> Self {
         let count = indices.len() as u32;
-        if let Indices::Meshlets(meshlets) = indices {
-            let words = core::iter::once(count).chain(meshlets.first().iter().copied());
-            return self.section(Kind::Meshlets, words.chain(bytes(meshlets.corners().as_flattened())).collect());
+        match indices {
+            Indices::Meshlets(meshlets) => return self.section(Kind::Meshlets, counted_meshlets(meshlets)),
+            Indices::Quads(quads) => return self.section(Kind::Quads, counted_meshlets(quads)),
+            Indices::Narrow(_) | Indices::Wide(_) => {}
         }
         let corners = (0..count).flat_map(|triangle| indices.get(triangle)).flatten();
         if matches!(indices, Indices::Narrow(_)) || vertices <= 1 << 16 {
@@ -282,6 +285,12 @@ impl Baker {
 fn counted_halves(count: u32, numbers: impl Iterator<Item = u32>) -> Vec<u32> {
     let numbers: Vec<u32> = numbers.collect();
     core::iter::once(count).chain(halves(&numbers)).collect()
+}
+
+/// How many there are, the first vertex of each 64, and their corners in bytes.
+fn counted_meshlets<const CORNERS: usize>(meshlets: Meshlets<'_, CORNERS>) -> Vec<u32> {
+    let words = core::iter::once(meshlets.len() as u32).chain(meshlets.first().iter().copied());
+    words.chain(bytes(meshlets.corners().as_flattened())).collect()
 }
 
 /// Bytes, four per word.

@@ -120,7 +120,7 @@ impl From<MeshError> for Status {
             MeshError::Index { .. } => Self::Index,
             MeshError::Vertex { .. } | MeshError::Frame => Self::Vertex,
             MeshError::TooMany => Self::TooMany,
-            MeshError::Masks { .. } | MeshError::Meshlets { .. } => Self::Length,
+            MeshError::Masks { .. } | MeshError::Meshlets { .. } | MeshError::Quads => Self::Length,
         }
     }
 }

@@ -4,6 +4,8 @@
 use engine::LatticeMesh;
 #[cfg(feature = "numbers")]
 use engine::primitives::Reordered;
+#[cfg(feature = "quads")]
+use engine::primitives::QuadMesh;
 use engine::{
     Hit, Mesh, PreparedRay, Primitives, Ray, Span,
     asset::{Asset, Kind},
@@ -14,7 +16,7 @@ use engine::{
 
 use crate::status::Status;
 
-/// A mesh, perhaps on a lattice, whose triangles may stand in another order than their owner's.
+/// A mesh, perhaps on a lattice, whose triangles may stand in another order than their owner's, or in pairs.
 #[derive(Clone, Copy)]
 pub enum Triangles {
     /// In order.
@@ -28,6 +30,12 @@ pub enum Triangles {
     /// Both.
     #[cfg(all(feature = "numbers", feature = "lattice"))]
     NumberedLattice(Reordered<'static, LatticeMesh<'static>>),
+    /// In pairs.
+    #[cfg(feature = "quads")]
+    Pairs(QuadMesh<Mesh<'static>>),
+    /// In pairs, with vertices on a lattice.
+    #[cfg(all(feature = "quads", feature = "lattice"))]
+    LatticePairs(QuadMesh<LatticeMesh<'static>>),
 }
 
 /// What each kind answers.
@@ -41,6 +49,10 @@ macro_rules! either {
             Triangles::Lattice($mesh) => $answer,
             #[cfg(all(feature = "numbers", feature = "lattice"))]
             Triangles::NumberedLattice($mesh) => $answer,
+            #[cfg(feature = "quads")]
+            Triangles::Pairs($mesh) => $answer,
+            #[cfg(all(feature = "quads", feature = "lattice"))]
+            Triangles::LatticePairs($mesh) => $answer,
         }
     };
 }
@@ -49,16 +61,19 @@ impl Triangles {
     /// The triangles of an asset.
     pub fn stored(asset: &Asset<'static>) -> Result<Self, Status> {
         let numbered = has(asset, Kind::Numbers);
-        let on_lattice = has(asset, Kind::LatticeVertices);
-        Ok(match (numbered, on_lattice) {
-            (false, false) => Self::Plain(asset.read()?),
+        let (on_lattice, in_pairs) = (has(asset, Kind::LatticeVertices), has(asset, Kind::Quads));
+        Ok(match (numbered, on_lattice, in_pairs) {
+            (false, false, false) => Self::Plain(asset.read()?),
             #[cfg(feature = "numbers")]
-            (true, false) => Self::Numbered(asset.read()?),
+            (true, false, false) => Self::Numbered(asset.read()?),
             #[cfg(feature = "lattice")]
-            (false, true) => Self::Lattice(asset.read()?),
+            (false, true, false) => Self::Lattice(asset.read()?),
             #[cfg(all(feature = "numbers", feature = "lattice"))]
-            (true, true) => Self::NumberedLattice(asset.read()?),
-            #[cfg(not(all(feature = "numbers", feature = "lattice")))]
+            (true, true, false) => Self::NumberedLattice(asset.read()?),
+            #[cfg(feature = "quads")]
+            (false, false, true) => Self::Pairs(asset.read()?),
+            #[cfg(all(feature = "quads", feature = "lattice"))]
+            (false, true, true) => Self::LatticePairs(asset.read()?),
             _ => return Err(Status::LeftOut),
         })
     }
@@ -72,6 +87,10 @@ impl Primitives for Triangles {
     #[inline(always)]
     fn len(&self) -> u32 {
         either!(self, mesh => mesh.len())
+    }
+
+    fn numbers(&self) -> u32 {
+        either!(self, mesh => mesh.numbers())
     }
 
     fn bounds(&self, index: u32) -> Aabb {

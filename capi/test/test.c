@@ -7,9 +7,9 @@
 
 enum { TRIANGLES = 200, RAYS = 300, WORDS = 1 << 16 };
 
-/** Assets of one mesh, with each of the structures, then on a lattice; at multiples of 4 bytes, each up to the next. */
+/** Assets of one mesh, with each of the structures, then on a lattice, in pairs, and both; at multiples of 4 bytes, each up to the next. */
 extern const unsigned char *const baked[];
-enum { BAKED = 7, LATTICE = BAKED };
+enum { BAKED = 7, LATTICE = BAKED, PAIRS_LIST, PAIRS, LATTICE_PAIRS };
 
 static int failures;
 static uint32_t hash = 2166136261u, seed = 1;
@@ -207,18 +207,25 @@ static hitscan_status opened(size_t bytes, uint32_t word, uint32_t flip, bool su
     return status;
 }
 
+static hitscan_scene open_baked(int number) {
+    hitscan_scene scene;
+    EXPECT(hitscan_open(&scene, baked[number], (size_t)(baked[number + 1] - baked[number])), OK);
+    return scene;
+}
+
 static void test_assets(void) {
     uint32_t expected = 0;
     for (int i = 0; i < BAKED; i++) {
-        hitscan_scene scene, copy;
-        EXPECT(hitscan_open(&scene, baked[i], (size_t)(baked[i + 1] - baked[i])), OK);
-        copy = scene;
+        const hitscan_scene scene = open_baked(i), copy = scene;
         if (i == 0) add(expected = answers(&copy));
         same("baked", &copy, expected);
     }
-    hitscan_scene moved;
-    EXPECT(hitscan_open(&moved, baked[LATTICE], (size_t)(baked[LATTICE + 1] - baked[LATTICE])), OK);
+    const hitscan_scene moved = open_baked(LATTICE), pairs = open_baked(PAIRS), both = open_baked(LATTICE_PAIRS);
     add(answers(&moved));
+    const hitscan_scene list = open_baked(PAIRS_LIST);
+    add(expected = answers(&list));
+    same("pairs", &pairs, expected);
+    add(answers(&both));
     const size_t bytes = (size_t)(baked[1] - baked[0]);
     CHECK(opened(bytes, 0, 0, false) == HITSCAN_OK);
     EXPECT(opened(bytes, 0, 1, false), MAGIC);

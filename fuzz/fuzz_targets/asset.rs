@@ -7,7 +7,7 @@ use hitscan::{
     asset::Asset,
     bake::{self, Baker},
     glam::{Vec2, Vec3},
-    primitives::{Mapped, Smooth},
+    primitives::{Mapped, Proximity, QuadMesh, Smooth},
     query::Progress,
     render::{Texels, Texture, Textures},
 };
@@ -15,15 +15,28 @@ use libfuzzer_sys::fuzz_target;
 use std::sync::LazyLock;
 
 /// A small asset with a structure of each kind, for the fuzzer to damage.
-static SEEDS: LazyLock<Vec<Vec<u32>>> =
-    LazyLock::new(|| Plan::all().filter(|plan| plan.kind().is_some()).map(seed).collect());
+static SEEDS: LazyLock<Vec<Vec<u32>>> = LazyLock::new(|| {
+    let plans = Plan::all().filter(|plan| plan.kind().is_some());
+    plans.flat_map(|plan| [seed(&plan), seed_of_pairs(&plan)]).collect()
+});
+
+/// A small asset of triangles in pairs with a structure by this plan.
+fn seed_of_pairs(plan: &Plan) -> Vec<u32> {
+    let vertices: Vec<Vec3> = (0..10).map(|i| Vec3::new((i % 2) as f32, (i * 3 % 4) as f32, i as f32)).collect();
+    let strip: Vec<[u16; 3]> = (0..8).map(|i| [i + i % 2, i + 1 - i % 2, i + 2]).collect();
+    let quads = bake::quads(&bake::pairs(&Mesh::new(&vertices, &strip[..]).unwrap()).corners[..]).unwrap();
+    let vertices = quads.vertices(&vertices);
+    let mesh = Mesh::new(&vertices, quads.indices()).unwrap();
+    let words = bake::build(&QuadMesh::new(mesh).unwrap(), plan).unwrap();
+    Baker::new().mesh(&mesh).structure(Structure::open(plan.kind().unwrap(), &words).unwrap()).finish()
+}
 
 /// A small asset with a structure by this plan, normals and textures.
-fn seed(plan: Plan) -> Vec<u32> {
+fn seed(plan: &Plan) -> Vec<u32> {
     let vertices: Vec<Vec3> = (0..24).map(|i| Vec3::new((i * 7 % 5) as f32, (i * 3 % 4) as f32, i as f32)).collect();
     let triangles: Vec<[u16; 3]> = (0..8).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
     let mesh = Mesh::new(&vertices, &triangles[..]).unwrap();
-    let words = bake::build(&mesh, &plan).unwrap();
+    let words = bake::build(&mesh, plan).unwrap();
     let structure = Structure::open(plan.kind().unwrap(), &words).unwrap();
     let (normals, coordinates) = ([Vec3::Z; 24], [Vec2::ONE; 24]);
     let palette = [0x1234; 16];
@@ -40,6 +53,19 @@ fn seed(plan: Plan) -> Vec<u32> {
 fn checksum(words: &[u32]) -> u32 {
     let summed = words.iter().enumerate().filter(|(index, _)| *index != 4);
     summed.fold(0x811c_9dc5, |sum: u32, (_, word)| (sum ^ word).wrapping_mul(0x0100_0193).rotate_left(13))
+}
+
+/// Asks a scene whatever can be asked.
+fn ask<P: Proximity>(scene: &Scene<Structure<'_>, P>) {
+    // Whatever a structure counts, there is no more of it than bits.
+    let most = scene.accelerator().as_words().len() as u32 * 32;
+    for ray in
+        [Ray::new(Vec3::NEG_ONE, Vec3::ONE), Ray::new(Vec3::ONE, Vec3::Z), Ray::new(Vec3::MAX * 1.0e-3, Vec3::NEG_X)]
+    {
+        assert!(matches!(scene.begin(&ray).advance(most), Progress::Done(_)));
+        let _ = scene.hits(&ray).count();
+    }
+    let _ = scene.nearest_point(Vec3::ONE, f32::MAX);
 }
 
 fuzz_target!(|input: (u8, Vec<(u16, u32)>)| {
@@ -69,14 +95,6 @@ fuzz_target!(|input: (u8, Vec<(u16, u32)>)| {
         let ray = Ray::new(Vec3::NEG_ONE, Vec3::ONE);
         let _ = scene.closest_hit(&ray).map(|hit| scene.surface(&ray, &hit));
     }
-    let Ok(scene): Result<Scene<Structure, Mesh>, _> = asset.scene() else { return };
-    // Whatever a structure counts, there is no more of it than bits.
-    let most = scene.accelerator().as_words().len() as u32 * 32;
-    for ray in
-        [Ray::new(Vec3::NEG_ONE, Vec3::ONE), Ray::new(Vec3::ONE, Vec3::Z), Ray::new(Vec3::MAX * 1.0e-3, Vec3::NEG_X)]
-    {
-        assert!(matches!(scene.begin(&ray).advance(most), Progress::Done(_)));
-        let _ = scene.hits(&ray).count();
-    }
-    let _ = scene.nearest_point(Vec3::ONE, f32::MAX);
+    let _ = asset.scene::<Structure, QuadMesh<Mesh>>().map(|scene| ask(&scene));
+    let _ = asset.scene::<Structure, Mesh>().map(|scene| ask(&scene));
 });

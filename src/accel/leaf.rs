@@ -44,17 +44,16 @@ impl References<'_> {
     /// The numbers behind a reference and the next one, if there are both.
     #[inline(always)]
     pub(crate) fn pair(&self, index: u32) -> Option<(u32, u32)> {
-        let index = index as usize;
         match self {
-            Self::Narrow(halves) if SECOND_FIRST == 0 => match halves.get(index..index.wrapping_add(2))? {
-                &[first, second] => Some((u32::from(first), u32::from(second))),
-                _ => None,
-            },
-            Self::Narrow(_) => Some((self.get(index as u32), self.get(index as u32 + 1))),
-            Self::Wide(words) => match words.get(index..index.wrapping_add(2))? {
-                &[first, second] => Some((first, second)),
-                _ => None,
-            },
+            Self::Narrow(halves) if SECOND_FIRST == 0 => {
+                let &[first, second] = halves.get(index as usize..)?.first_chunk()?;
+                Some((u32::from(first), u32::from(second)))
+            }
+            Self::Narrow(_) => Some((self.get(index), self.get(index + 1))),
+            Self::Wide(words) => {
+                let &[first, second] = words.get(index as usize..)?.first_chunk()?;
+                Some((first, second))
+            }
         }
     }
 }

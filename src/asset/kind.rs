@@ -11,6 +11,8 @@ pub enum Kind {
     LatticeVertices,
     /// How many triangles, a first vertex for each 64, then three `u8` each.
     Meshlets,
+    /// How many quads, a first vertex for each 64, then four `u8` each.
+    Quads,
     /// How many triangles, then three `u16` each.
     NarrowIndices,
     /// Triangles, three `u32` each.
@@ -52,10 +54,11 @@ pub enum Kind {
 }
 
 impl Kind {
-    const KNOWN: [Self; 21] = [
+    const KNOWN: [Self; 22] = [
         Self::Vertices,
         Self::LatticeVertices,
         Self::Meshlets,
+        Self::Quads,
         Self::NarrowIndices,
         Self::WideIndices,
         Self::Normals,
@@ -82,6 +85,7 @@ impl Kind {
             Self::Vertices => u32::from_le_bytes(*b"vert"),
             Self::LatticeVertices => u32::from_le_bytes(*b"lvtx"),
             Self::Meshlets => u32::from_le_bytes(*b"idx1"),
+            Self::Quads => u32::from_le_bytes(*b"quad"),
             Self::NarrowIndices => u32::from_le_bytes(*b"idx2"),
             Self::WideIndices => u32::from_le_bytes(*b"idx4"),
             Self::Normals => u32::from_le_bytes(*b"nrml"),
@@ -137,6 +141,7 @@ impl fmt::Display for Kind {
             Self::Vertices => f.write_str("vertices"),
             Self::LatticeVertices => f.write_str("lattice vertices"),
             Self::Meshlets => f.write_str("meshlets"),
+            Self::Quads => f.write_str("quads"),
             Self::NarrowIndices => f.write_str("16-bit indices"),
             Self::WideIndices => f.write_str("32-bit indices"),
             Self::Normals => f.write_str("normals"),

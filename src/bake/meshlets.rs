@@ -2,20 +2,33 @@ use alloc::{collections::BTreeMap, vec::Vec};
 
 use crate::primitives::{Indices, Meshlets};
 
-/// Corners in 3 bytes a triangle, and the order of vertices which that takes.
+/// Corners in 3 bytes a triangle, or in 4 a quad, and the order of vertices which that takes.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct InMeshlets {
+pub struct InMeshlets<const CORNERS: usize = 3> {
     /// Which of the old vertices stands at each place; some stand at several.
     pub order: Vec<u32>,
     first: Vec<u32>,
-    corners: Vec<[u8; 3]>,
+    corners: Vec<[u8; CORNERS]>,
 }
 
-impl InMeshlets {
-    /// The corners of the triangles, for meshes over [`vertices`](Self::vertices).
+impl<const CORNERS: usize> InMeshlets<CORNERS> {
+    /// The corners, for meshes over [`vertices`](Self::vertices).
     #[must_use]
-    pub fn indices(&self) -> Indices<'_> {
-        Meshlets::new(&self.first, &self.corners).map_or(Indices::Narrow(&[]), Indices::Meshlets)
+    pub fn indices<'a>(&'a self) -> Indices<'a>
+    where
+        Indices<'a>: From<Meshlets<'a, CORNERS>>,
+    {
+        Meshlets::new(&self.first, &self.corners).map_or(Indices::Narrow(&[]), Indices::from)
+    }
+
+    /// Those of polygons in this order.
+    pub(super) fn of(polygons: &[[u32; CORNERS]]) -> Self {
+        let mut made = Self { order: Vec::new(), first: Vec::new(), corners: Vec::new() };
+        let mut last = BTreeMap::new();
+        for polygons in polygons.chunks(<Meshlets>::SIZE) {
+            made.push(polygons, &mut last);
+        }
+        made
     }
 
     /// What there is of each vertex, positions or normals, in the new order.
@@ -25,8 +38,8 @@ impl InMeshlets {
     }
 
     /// Puts the corners of a meshlet behind those before it; `last` are the last places of the vertices.
-    fn push(&mut self, triangles: &[[u32; 3]], last: &mut BTreeMap<u32, usize>) {
-        let mut vertices: Vec<u32> = triangles.as_flattened().to_vec();
+    fn push(&mut self, polygons: &[[u32; CORNERS]], last: &mut BTreeMap<u32, usize>) {
+        let mut vertices: Vec<u32> = polygons.as_flattened().to_vec();
         vertices.sort_unstable();
         vertices.dedup();
         let mut places: Vec<usize> = vertices.iter().filter_map(|vertex| last.get(vertex).copied()).collect();
@@ -45,7 +58,7 @@ impl InMeshlets {
             last.insert(vertex, place);
             (place - first) as u8
         };
-        self.corners.extend(triangles.iter().map(|corners| corners.map(&mut corner)));
+        self.corners.extend(polygons.iter().map(|corners| corners.map(&mut corner)));
         self.first.push(first as u32);
     }
 }
@@ -73,10 +86,5 @@ const REACH: usize = 1 << 8;
 pub fn meshlets<'a>(indices: impl Into<Indices<'a>>) -> InMeshlets {
     let indices = indices.into();
     let triangles: Vec<[u32; 3]> = (0..indices.len() as u32).filter_map(|triangle| indices.get(triangle)).collect();
-    let mut made = InMeshlets { order: Vec::new(), first: Vec::new(), corners: Vec::new() };
-    let mut last = BTreeMap::new();
-    for triangles in triangles.chunks(Meshlets::SIZE) {
-        made.push(triangles, &mut last);
-    }
-    made
+    InMeshlets::of(&triangles)
 }

@@ -32,7 +32,7 @@ pub(crate) use ray::{AxisView, beyond, descends, slack};
 pub use ray::{PreparedRay, Ray};
 pub use sphere::Sphere;
 pub use transform::{Singular, Transform};
-pub(crate) use triangle::intersect as intersect_triangle;
+pub(crate) use triangle::{Corner, Either, intersect as intersect_triangle, intersect_quad};
 pub use triangle::{Crossing, Triangle};
 #[cfg(feature = "std")]
 pub(crate) use triangle::{Possible, ShearLanes, Wedge, parameters, range};

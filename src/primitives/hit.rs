@@ -59,6 +59,18 @@ impl Span {
         Self { from, until, ..self }
     }
 
+    /// The parameters to which hits are clamped.
+    #[inline(always)]
+    pub(super) const fn clamp_to(&self) -> (f32, f32) {
+        (self.enter, self.exit)
+    }
+
+    /// The same hits, clamped to these parameters.
+    #[inline(always)]
+    pub(super) const fn clamped_to(self, (enter, exit): (f32, f32)) -> Self {
+        Self { enter, exit, ..self }
+    }
+
     /// The least hit accepted.
     #[inline(always)]
     pub(crate) const fn from(&self) -> Hit {

@@ -7,7 +7,7 @@ use crate::{
     geometry::in_range,
 };
 
-/// The corners of triangles: three vertex numbers each, in as few bits as they fit.
+/// The corners of triangles: three vertex numbers each, in as few bits as they fit, or four of a pair.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Indices<'a> {
     /// Numbers up to 65,535: 6 bytes a triangle.
@@ -16,6 +16,9 @@ pub enum Indices<'a> {
     Wide(&'a [[u32; 3]]),
     /// Numbers that are counted from where each [`Meshlets::SIZE`] triangles begin: 3 bytes a triangle.
     Meshlets(Meshlets<'a>),
+    /// Pairs of triangles that share an edge, `a b c` and `a c d`, by four numbers that are counted like those of meshlets: 2 bytes a
+    /// triangle. What is numbered are the triangles; structures may refer to pairs, see [`QuadMesh`](super::QuadMesh).
+    Quads(Meshlets<'a, 4>),
 }
 
 impl<'a> Indices<'a> {
@@ -27,6 +30,7 @@ impl<'a> Indices<'a> {
             Self::Narrow(list) => list.len(),
             Self::Wide(list) => list.len(),
             Self::Meshlets(meshlets) => meshlets.len(),
+            Self::Quads(quads) => quads.len() * 2,
         }
     }
 
@@ -44,6 +48,28 @@ impl<'a> Indices<'a> {
             Self::Narrow(list) => list.get(triangle as usize).map(|corners| corners.map(u32::from)),
             Self::Wide(list) => list.get(triangle as usize).copied(),
             Self::Meshlets(meshlets) => meshlets.get(triangle),
+            Self::Quads(quads) => {
+                let [a, b, c, d] = quads.get(triangle / 2)?;
+                Some(if triangle & 1 == 0 { [a, b, c] } else { [a, c, d] })
+            }
+        }
+    }
+
+    /// How many quads there are, if that is what triangles are stored in.
+    #[inline(always)]
+    pub(super) const fn quads(&self) -> Option<u32> {
+        match self {
+            Self::Quads(quads) => Some(quads.len() as u32),
+            _ => None,
+        }
+    }
+
+    /// The corners of a quad.
+    #[inline(always)]
+    pub(super) fn quad(&self, quad: u32) -> Option<[u32; 4]> {
+        match self {
+            Self::Quads(quads) => quads.get(quad),
+            _ => None,
         }
     }
 
@@ -93,12 +119,22 @@ impl<'a> From<Meshlets<'a>> for Indices<'a> {
     }
 }
 
+impl<'a> From<Meshlets<'a, 4>> for Indices<'a> {
+    fn from(quads: Meshlets<'a, 4>) -> Self {
+        Self::Quads(quads)
+    }
+}
+
 /// The section of indices, of whichever width.
 impl<'a> Stored<'a> for Indices<'a> {
     fn read(asset: &Asset<'a>) -> Result<Self, Error> {
         if let Ok(words) = asset.section(Kind::Meshlets) {
             let error = AssetError::Shape { kind: Kind::Meshlets, words: words.len() };
             return Ok(Self::Meshlets(Meshlets::of_words(words).ok_or(error)?));
+        }
+        if let Ok(words) = asset.section(Kind::Quads) {
+            let error = AssetError::Shape { kind: Kind::Quads, words: words.len() };
+            return Ok(Self::Quads(Meshlets::of_words(words).ok_or(error)?));
         }
         if let Ok(words) = asset.section(Kind::NarrowIndices) {
             let error = AssetError::Shape { kind: Kind::NarrowIndices, words: words.len() };

@@ -1,6 +1,8 @@
 use glam::Vec3;
 
-use super::{Hit, Indices, MeshError, Primitives, Probe, Proximity, Sides, Span, Surface, faces::Faces};
+use super::{
+    Hit, Indices, MeshError, Primitives, Probe, Proximity, Quads, Sides, Span, Surface, faces::Faces, quad_mesh,
+};
 use crate::{
     asset::{Asset, AssetError, Kind, Stored},
     error::Error,
@@ -180,6 +182,20 @@ impl Primitives for LatticeMesh<'_> {
     #[inline(always)]
     fn outline(&self, index: u32) -> Option<Triangle> {
         Some(self.triangle(index))
+    }
+}
+
+impl Quads for LatticeMesh<'_> {
+    #[inline(always)]
+    fn quads(&self) -> Option<u32> {
+        self.faces.indices.quads()
+    }
+
+    #[inline(always)]
+    fn intersect_quad(&self, quad: u32, ray: &PreparedRay, span: &Span) -> Option<Hit> {
+        let [a, b, c, d] = self.faces.indices.quad(quad)?;
+        let corner = |number: u32| Some((&self.lattice, self.vertices.get(number as usize)?));
+        quad_mesh::intersect(self, [corner(a)?, corner(b)?, corner(c)?, corner(d)?], quad, ray, span)
     }
 }
 

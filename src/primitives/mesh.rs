@@ -2,7 +2,7 @@ use core::fmt;
 
 use glam::Vec3;
 
-use super::{Hit, Indices, Primitives, Probe, Proximity, Span, Surface, faces::Faces};
+use super::{Hit, Indices, Primitives, Probe, Proximity, Quads, Span, Surface, faces::Faces, quad_mesh};
 use crate::{
     asset::{Asset, AssetError, Kind, Stored},
     error::Error,
@@ -66,6 +66,8 @@ pub enum MeshError {
         /// How many triangles there are.
         triangles: usize,
     },
+    /// The triangles do not stand in pairs that share an edge: see [`Indices::Quads`](super::Indices::Quads).
+    Quads,
 }
 
 impl fmt::Display for MeshError {
@@ -80,6 +82,7 @@ impl fmt::Display for MeshError {
             Self::Frame => write!(f, "the box of the lattice is empty, not finite or beyond 2^126"),
             Self::TooMany => write!(f, "a mesh holds at most 2^32 - 2 triangles"),
             Self::Masks { masks, triangles } => write!(f, "{masks} masks were given for {triangles} triangles"),
+            Self::Quads => write!(f, "the triangles do not stand in pairs that share an edge"),
             Self::Meshlets { meshlets, triangles } => {
                 write!(f, "{meshlets} first vertices were given for {triangles} triangles, not one for each 64")
             }
@@ -210,6 +213,20 @@ impl Primitives for Mesh<'_> {
 
     fn clip(&self, index: u32, cell: &Aabb) -> Option<Aabb> {
         self.triangle(index).clip(cell)
+    }
+}
+
+impl Quads for Mesh<'_> {
+    #[inline(always)]
+    fn quads(&self) -> Option<u32> {
+        self.faces.indices.quads()
+    }
+
+    #[inline(always)]
+    fn intersect_quad(&self, quad: u32, ray: &PreparedRay, span: &Span) -> Option<Hit> {
+        let [a, b, c, d] = self.faces.indices.quad(quad)?;
+        let corner = |vertex: u32| self.vertices.get(vertex as usize).map(AsRef::<[f32; 3]>::as_ref);
+        quad_mesh::intersect(self, [corner(a)?, corner(b)?, corner(c)?, corner(d)?], quad, ray, span)
     }
 }
 

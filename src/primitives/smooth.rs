@@ -1,6 +1,6 @@
 use glam::Vec3;
 
-use super::{Hit, Mesh, Normals, Primitives, Span, Surface, unit};
+use super::{Hit, Mesh, Normals, Primitives, Quads, Span, Surface, unit};
 use crate::{
     asset::{Asset, Stored},
     error::Error,
@@ -124,6 +124,18 @@ impl Primitives for Smooth<'_> {
     #[inline]
     fn outline(&self, index: u32) -> Option<Triangle> {
         self.mesh.outline(index)
+    }
+}
+
+impl Quads for Smooth<'_> {
+    #[inline(always)]
+    fn quads(&self) -> Option<u32> {
+        self.mesh.quads()
+    }
+
+    #[inline(always)]
+    fn intersect_quad(&self, quad: u32, ray: &PreparedRay, span: &Span) -> Option<Hit> {
+        self.mesh.intersect_quad(quad, ray, span)
     }
 }
 

@@ -31,17 +31,20 @@ pub fn choose<P: Primitives + Sync>(
     };
     let rays = Rays::around(&*first.scene(primitives)?);
     let mut best: Option<(f64, Built)> = None;
-    let mut least = usize::MAX;
+    let mut least = None;
     for built in tried {
+        let Some(prediction) = Prediction::new(chip, &built, primitives, &rays)? else { continue };
         let bytes = built.baked_bytes(primitives)?;
-        least = least.min(bytes);
+        least = Some(least.unwrap_or(bytes).min(bytes));
         if most.is_some_and(|most| bytes > most) {
             continue;
         }
-        let Some(prediction) = Prediction::new(chip, &built, primitives, &rays)? else { continue };
         if best.as_ref().is_none_or(|(typical, _)| prediction.typical < *typical) {
             best = Some((prediction.typical, built.because(prediction.to_string())));
         }
     }
-    best.map(|(_, built)| built).ok_or(Failure::Crowded { allowed: most.unwrap_or_default(), least })
+    best.map(|(_, built)| built).ok_or_else(|| match least {
+        Some(least) => Failure::Crowded { allowed: most.unwrap_or_default(), least },
+        None => Failure::new("nobody measured what this structure takes over pairs", "choose --structure grid"),
+    })
 }

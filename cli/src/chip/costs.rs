@@ -30,10 +30,12 @@ pub enum Arithmetic {
 }
 
 impl Costs {
-    /// Those of a structure, or of the list if that is none.
-    pub fn of(chip: Chip, structure: Option<Kind>, arithmetic: Arithmetic) -> Option<Self> {
+    /// Those of a structure, or of the list if that is none, over triangles or over pairs of them.
+    pub fn of(chip: Chip, structure: Option<Kind>, arithmetic: Arithmetic, in_pairs: bool) -> Option<Self> {
         let costs = |name| TABLE.lines().skip(1).find_map(|line| Self::read(line, chip, name));
         match (arithmetic, structure) {
+            (Arithmetic::Floats, Some(Kind::Grid)) if in_pairs => costs("grid-quads"),
+            _ if in_pairs => None,
             // All of its tests are in one leaf.
             (Arithmetic::Floats, None) => costs("kdtree").map(|kd| Self { node: 0.0, ..kd }),
             (Arithmetic::Floats, Some(Kind::Grid)) => costs("grid"),
@@ -77,16 +79,21 @@ mod tests {
         let kinds = [Kind::Grid, Kind::Octree, Kind::KdTree, Kind::CompactKdTree, Kind::Bvh, Kind::DualSplit];
         for chip in Chip::value_variants() {
             for kind in kinds.map(Some).into_iter().chain([None]) {
-                let costs = Costs::of(*chip, kind, Arithmetic::Floats).unwrap_or_else(|| panic!("{chip:?} {kind:?}"));
+                let costs = Costs::of(*chip, kind, Arithmetic::Floats, false);
+                let costs = costs.unwrap_or_else(|| panic!("{chip:?} {kind:?}"));
                 assert!(costs.setup > 100.0 && costs.test > 50.0 && costs.node >= 0.0, "{chip:?} {kind:?} {costs:?}");
                 assert!((200..4096).contains(&costs.stack) && (2048..65536).contains(&costs.code), "{costs:?}");
             }
+            let [grid, pairs] = [false, true].map(|in_pairs| {
+                Costs::of(*chip, Some(Kind::Grid), Arithmetic::Floats, in_pairs).expect("measured, too")
+            });
+            assert!(pairs.test > grid.test && pairs.test < 2.0 * grid.test, "{chip:?} {grid:?} {pairs:?}");
         }
     }
 
     #[test]
     fn a_float_costs_more_without_an_fpu_and_an_integer_does_not() {
-        let test = |chip, arithmetic| Costs::of(chip, Some(Kind::DualSplit), arithmetic).unwrap().test;
+        let test = |chip, arithmetic| Costs::of(chip, Some(Kind::DualSplit), arithmetic, false).unwrap().test;
         for (without, with) in [(Chip::M3, Chip::M4), (Chip::M0, Chip::M33), (Chip::Rv32imac, Chip::Rv32imafc)] {
             assert!(test(without, Arithmetic::Floats) > 10.0 * test(with, Arithmetic::Floats), "{without:?} {with:?}");
             assert!(
@@ -94,6 +101,6 @@ mod tests {
                 "{without:?} {with:?}"
             );
         }
-        assert_eq!(Costs::of(Chip::M0, Some(Kind::Grid), Arithmetic::Integers), None);
+        assert_eq!(Costs::of(Chip::M0, Some(Kind::Grid), Arithmetic::Integers, false), None);
     }
 }

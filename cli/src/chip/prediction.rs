@@ -30,9 +30,11 @@ impl Prediction {
     pub fn new<P: Primitives>(chip: Chip, built: &Built, primitives: &P, rays: &Rays) -> Result<Option<Self>, Failure> {
         let structure = built.structure(primitives)?;
         let kind = structure.kind();
-        let Some(floats) = Costs::of(chip, kind, Arithmetic::Floats) else { return Ok(None) };
-        // Only what stands on a lattice has a frame.
-        let integers = primitives.frame().and_then(|_| Costs::of(chip, kind, Arithmetic::Integers));
+        // Only pairs have more numbers than shapes, and only what stands on a lattice has a frame.
+        let in_pairs = primitives.numbers() > primitives.len();
+        let costs = |arithmetic| Costs::of(chip, kind, arithmetic, in_pairs);
+        let Some(floats) = costs(Arithmetic::Floats) else { return Ok(None) };
+        let integers = primitives.frame().and_then(|_| costs(Arithmetic::Integers));
         let counts = Counts::default();
         let scene = scene(structure, primitives, Some(&counts))?;
         let rays = rays.primary.iter().chain(&rays.bounce);

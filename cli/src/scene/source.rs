@@ -1,11 +1,11 @@
 use std::{fs::File, io::Read, path::Path};
 
 use hitscan::{
-    Error, Mesh,
+    Accelerator, Error, Mesh,
     accel::Structure,
     asset::{Asset, AssetError, Kind},
     bake::Baker,
-    primitives::{Normals, Primitives, Renumbering, Reordered, Soup, TexCoords},
+    primitives::{Indices, Normals, Primitives, QuadMesh, Renumbering, Reordered, Soup, TexCoords},
     render::{Materials, Textures},
 };
 
@@ -43,6 +43,8 @@ pub struct View<'a> {
     pub mesh: Mesh<'a>,
     /// The same as an asset has them, if that is in the order of its leaves: its structure is over these.
     pub soup: Option<Soup<'a>>,
+    /// Whether the structure of an asset refers to pairs of them.
+    pub in_pairs: bool,
     /// Their materials, if it names any.
     pub materials: Option<Materials<'a>>,
     /// The pictures on those of an asset, and where in these the vertices lie, if there are any.
@@ -151,7 +153,8 @@ impl Source {
                 let mesh = geometry.mesh().map_err(name)?;
                 let (y_up, seconds) = (geometry.y_up, 0.0);
                 let (soup, textures, normals, structure, renumbering) = (None, None, None, None, None);
-                Ok(View { mesh, soup, materials, textures, normals, structure, renumbering, y_up, seconds })
+                let in_pairs = false;
+                Ok(View { mesh, soup, in_pairs, materials, textures, normals, structure, renumbering, y_up, seconds })
             }
             Self::Asset { .. } if self.world().is_some() => {
                 let what = format!("{}: is a world of placed scenes", path.display());
@@ -163,6 +166,10 @@ impl Source {
                 let asset = Asset::from_words(words).map_err(|error| damaged(error.into()))?;
                 let has = |kind| asset.sections().any(|section| section.kind == kind);
                 let mesh = match unpacked {
+                    Some(geometry) if has(Kind::Quads) => {
+                        let indices: Indices<'_> = asset.read().map_err(damaged)?;
+                        Mesh::new(&geometry.vertices, indices).map_err(|error| damaged(error.into()))?
+                    }
                     Some(geometry) => geometry.mesh()?,
                     None => asset.read().map_err(damaged)?,
                 };
@@ -177,8 +184,12 @@ impl Source {
                     Err(error) => return Err(damaged(error)),
                 };
                 let renumbering = has(Kind::Numbers).then(|| asset.read().map_err(damaged)).transpose()?;
+                let pairs = QuadMesh::new(mesh).ok();
+                let in_pairs = pairs
+                    .zip(structure)
+                    .is_some_and(|(pairs, structure): (_, Structure<'_>)| structure.primitives() == pairs.len());
                 let (y_up, seconds) = (false, progress.finish());
-                Ok(View { mesh, soup, materials, textures, normals, structure, renumbering, y_up, seconds })
+                Ok(View { mesh, soup, in_pairs, materials, textures, normals, structure, renumbering, y_up, seconds })
             }
         }
     }

@@ -6,7 +6,7 @@ use hitscan::{
     bake::Baker,
     geometry::Aabb,
     glam::Vec3,
-    primitives::{Mapped, Smooth, TexCoords},
+    primitives::{Mapped, QuadMesh, Smooth, TexCoords},
     render::{Materials, Textures},
 };
 
@@ -86,7 +86,10 @@ impl Source {
             return show(&wide.scene(&mapped)?, &wide.describe(), &wide.time());
         }
         let built = view.build(choice, structure.preset)?;
+        let pairs = (view.in_pairs && choice.is_none()).then(|| QuadMesh::new(shaded).map_err(broken)).transpose()?;
+        let pairs = pairs.map(|pairs| Mapped::new(pairs, &view.mesh, coordinates));
         let scene = match (&renumbered, &view.soup) {
+            _ if let Some(pairs) = &pairs => built.scene(pairs)?,
             (_, Some(soup)) if choice.is_none() => built.scene(soup)?,
             (Some(triangles), _) => built.scene(triangles)?,
             _ => built.scene(&mapped)?,

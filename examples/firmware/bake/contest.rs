@@ -7,6 +7,7 @@ use hitscan::{
     accel::{List, Plan, Structure},
     bake::{self, Baker},
     bvh, dualsplit, grid, kdtree, octree,
+    primitives::QuadMesh,
 };
 
 use crate::{answer::Answer, camera, camera_answer, knot};
@@ -33,16 +34,21 @@ fn plans() -> Vec<(&'static str, Plan)> {
 /// An asset, and the bytes of the structure in it.
 type Asset = (Vec<u32>, usize);
 
-/// The asset of the finest grid with which it takes at most so many bytes.
-fn finest_grid(most: usize, asset: impl Fn(&Plan) -> Result<Asset, Box<dyn Error>>) -> Result<Asset, Box<dyn Error>> {
-    let densities = (4..80).rev().map(|step| step as f32 / 20.0);
-    for density in densities {
-        let (words, structure) = asset(&Plan::Grid(grid::Options { density, ..grid::Options::balanced() }))?;
-        if words.len() * 4 <= most {
-            return Ok((words, structure));
-        }
+/// The asset of the finest grid of a preset's form with which it takes at most so many bytes.
+fn finest_grid(
+    preset: grid::Options,
+    most: usize,
+    asset: impl Fn(&Plan) -> Result<Asset, Box<dyn Error>>,
+) -> Result<Asset, Box<dyn Error>> {
+    let at = |step: u32| asset(&Plan::Grid(grid::Options { density: step as f32 / 50.0, ..preset }));
+    let fits = |(words, _): &Asset| words.len() * 4 <= most;
+    // Finer grids take more bytes.
+    let (mut fitting, mut too_many) = (10, 400);
+    while too_many - fitting > 1 {
+        let middle = (fitting + too_many) / 2;
+        if fits(&at(middle)?) { fitting = middle } else { too_many = middle }
     }
-    Err("no grid fits".into())
+    Some(at(fitting)?).filter(fits).ok_or_else(|| "no grid fits".into())
 }
 
 /// The asset of triangles under a grid.
@@ -92,23 +98,34 @@ pub fn contest(out: &Path, small: bool) -> Result<String, Box<dyn Error>> {
             code += &contestant(out, (size, name), (corners.len(), words.len() * 4), asset, answer)?;
         }
     }
-    code += "];\n\n/// The finest grids within bytes a triangle: over a mesh, and over meshlets on a lattice.\n";
+    code += "];\n\n/// The finest grids within bytes a triangle: over a mesh, over its quads, and over these on a lattice.\n";
     code += "pub static GRIDS: &[Contestant] = &[\n";
     for (size, (along, around)) in knots.into_iter().take(if small { 0 } else { 2 }) {
         let (vertices, triangles) = knot::mesh(along, around);
         let mesh = Mesh::new(&vertices, triangles.as_slice())?;
         let all = triangles.len();
-        let (asset, bytes) = finest_grid(24 * all, |plan| under_grid(&mesh, Baker::new().mesh(&mesh), plan))?;
+        let (balanced, fast) = (grid::Options::balanced(), grid::Options::fast());
+        let baker = Baker::new().mesh(&mesh);
+        let (asset, bytes) = finest_grid(balanced, 24 * all, |plan| under_grid(&mesh, baker.clone(), plan))?;
         let answer = camera_answer(&Scene::new(List::new(&mesh)?, &mesh)?);
         code += &contestant(out, (size, "grid within-24"), (all, bytes), asset, answer)?;
-        let meshlets = bake::meshlets(&mesh);
-        let vertices = meshlets.vertices(&vertices);
-        let snapped = bake::lattice(&Mesh::new(&vertices, meshlets.indices())?);
-        let mesh = snapped.mesh(meshlets.indices())?;
-        let baker = Baker::new().lattice_mesh(&mesh);
-        let (asset, bytes) = finest_grid(14 * all, |plan| under_grid(&mesh, baker.clone(), plan))?;
+        let quads = bake::quads(bake::pairs(&mesh).corners.as_slice())?;
+        let vertices = quads.vertices(&vertices);
+        let mesh = Mesh::new(&vertices, quads.indices())?;
+        let (pairs, baker) = (QuadMesh::new(mesh)?, Baker::new().mesh(&mesh));
+        let small = under_grid(&pairs, baker.clone(), &Plan::Grid(grid::Options::small()))?;
+        let fine = finest_grid(fast, 24 * all, |plan| under_grid(&pairs, baker.clone(), plan))?;
+        for (name, (asset, bytes)) in [("grid-quads small", small), ("grid-quads within-24", fine)] {
+            // By the triangles: that they are tested two at a time must not show.
+            let answer = camera_answer(&Scene::new(List::new(&mesh)?, &mesh)?);
+            code += &contestant(out, (size, name), (all, bytes), asset, answer)?;
+        }
+        let snapped = bake::lattice(&mesh);
+        let mesh = snapped.mesh(&mesh)?;
+        let (pairs, baker) = (QuadMesh::new(mesh)?, Baker::new().lattice_mesh(&mesh));
+        let (asset, bytes) = finest_grid(balanced, 14 * all, |plan| under_grid(&pairs, baker.clone(), plan))?;
         let answer = camera_answer(&Scene::new(List::new(&mesh)?, &mesh)?);
-        code += &contestant(out, (size, "grid-lattice within-14"), (all, bytes), asset, answer)?;
+        code += &contestant(out, (size, "grid-lattice-quads within-14"), (all, bytes), asset, answer)?;
     }
     code += "];\n\n/// Triangles with their corners, where there is room.\npub static SOUPS: &[Contestant] = &[\n";
     for (size, (along, around)) in knots.into_iter().take(if small { 0 } else { 2 }) {

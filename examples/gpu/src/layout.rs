@@ -50,6 +50,8 @@ pub struct Layout {
 pub enum Unfit {
     /// Its structure is of a kind that they do not know.
     Structure,
+    /// Its triangles stand in pairs.
+    Pairs,
     /// A section is missing.
     Asset(AssetError),
     /// It is farther out than they calculate.
@@ -70,6 +72,7 @@ impl fmt::Display for Unfit {
             Self::Structure => {
                 write!(f, "its structure is none of kdtree, bvh and dual-split: bake it with --structure bvh")
             }
+            Self::Pairs => write!(f, "its triangles stand in pairs: bake it without --quads"),
             Self::Asset(error) => error.fmt(f),
             Self::Range { coordinate } => {
                 write!(f, "it reaches out to {coordinate:e}, farther than 2^30: scale it down")
@@ -184,6 +187,9 @@ fn triangles(part: Part, whole: &[u32], asset: &Asset<'_>) -> Result<Part, Unfit
         Ok(start) => (start + 7, 4),
         Err(_) => (section(Kind::Vertices)?, 0),
     };
+    if section(Kind::Quads).is_ok() {
+        return Err(Unfit::Pairs);
+    }
     let (indices, width) = match (section(Kind::Meshlets), section(Kind::NarrowIndices)) {
         (Ok(start), _) => (start + 1, 16),
         (_, Ok(start)) => (start + 1, 8),

@@ -8,7 +8,10 @@ use hitscan::{
     render::Caster,
 };
 
-use crate::alone::{Alone, PlacedAlone};
+use crate::{
+    alone::{Alone, PlacedAlone},
+    layout::Unfit,
+};
 
 /// The triangles of an asset.
 #[derive(Clone, Copy, Debug)]
@@ -95,7 +98,7 @@ impl<'p, 'a> World<'p, 'a> {
     ///
     /// # Errors
     ///
-    /// What is wrong with it, or that there are spheres in it.
+    /// What is wrong with it, or that there are spheres or pairs of triangles in it.
     pub fn read(asset: &Asset<'a>, parts: &'p Parts<'a>) -> Result<Self>
     where
         'a: 'p,
@@ -103,6 +106,9 @@ impl<'p, 'a> World<'p, 'a> {
         let has = |kind| asset.sections().any(|section| section.kind == kind);
         if has(Kind::Spheres) {
             bail!("there are spheres in it: bake triangles only");
+        }
+        if has(Kind::Quads) {
+            return Err(Unfit::Pairs.into());
         }
         let structure: Structure<'a> = asset.read()?;
         if has(Kind::Instances) {

@@ -3,14 +3,14 @@
 use core::hint::black_box;
 
 use hitscan::{
-    Accelerator, Arena, Hit, Instance, Instances, LatticeMesh, LatticeScene, List, Mesh, Primitives, Scene,
+    Accelerator, Arena, Hit, Instance, Instances, LatticeMesh, LatticeScene, List, Mesh, Primitives, Scene, Span,
     accel::{Bounded, Hierarchy, LatticeAccelerator, Structure},
     asset::Asset,
     error::BuildError,
     geometry::{Bundle, LatticePath, Transform},
     primitives::{
-        Indices, LatticeTriangles, Mapped, Meshlets, Normals, Order, Proximity, Renumbering, Reordered, Sides, Smooth,
-        Soup, Spheres, Surface, TexCoords,
+        Indices, LatticeTriangles, Mapped, Meshlets, Normals, Order, Proximity, QuadMesh, Quads, Renumbering,
+        Reordered, Sides, Smooth, Soup, Spheres, Surface, TexCoords,
     },
     query::ItemBuffer,
     render::{Camera, Tile},
@@ -54,6 +54,7 @@ pub fn all() {
     with(&Own);
     lattice(mesh.indices());
     meshlets();
+    quads(&mesh);
     soup();
     with(&spheres);
     with(&(mesh, spheres));
@@ -73,6 +74,21 @@ fn meshlets() {
     if let Ok(meshlets) = Meshlets::new(some(word, &mut first), corners) {
         black_box((meshlets.len(), meshlets.is_empty(), meshlets.get(word()), meshlets.first(), meshlets.corners()));
         lattice(meshlets.into());
+    }
+}
+
+fn quads(mesh: &Mesh<'_>) {
+    let (mut first, mut corners) = (None, None);
+    let corners = some(|| [word() as u8, word() as u8, word() as u8, word() as u8], &mut corners);
+    let Ok(quads) = Meshlets::new(some(word, &mut first), corners) else { return };
+    lattice(quads.into());
+    if let Ok(pairs) = Mesh::new(mesh.vertices(), quads).and_then(QuadMesh::new) {
+        with(&pairs);
+        black_box((pairs.mesh().quads(), pairs.mesh().len()));
+        let hit = || black_box(Hit { t: float(), primitive: word() });
+        if let Some(ray) = ray().prepare() {
+            black_box(pairs.mesh().intersect_quad(word(), &ray, &Span::new(hit(), hit())));
+        }
     }
 }
 
@@ -96,6 +112,9 @@ fn lattice(indices: Indices<'_>) {
         black_box(mesh.sides());
         black_box(mesh.positions().last());
         with(&mesh);
+        if let (Ok(pairs), Ok(list)) = (QuadMesh::new(mesh), List::new(&mesh)) {
+            black_box(Scene::new(list, pairs).map(|scene| scene.closest_hit(&ray())).ok());
+        }
         whole(List::new(&mesh), mesh);
         let mut memory = [0; 1024];
         let mut arena = Arena::new(black_box(memory.as_mut_slice()));

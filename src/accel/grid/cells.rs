@@ -8,7 +8,7 @@ use crate::accel::leaf::References;
 pub(super) struct Cells<'a> {
     /// Pairs of words per 32 cells: which of them are occupied, and how many are in the words before; none if each cell
     /// has an offset.
-    pub(super) blocks: &'a [u32],
+    pub(super) blocks: &'a [[u32; 2]],
     /// Where the references of each cell, or of each occupied one, begin; and where the last ones end.
     pub(super) offsets: References<'a>,
     /// The bits of an offset; above them may be a bit per octant in which there is something.
@@ -92,13 +92,11 @@ impl Cells<'_> {
     /// How many occupied cells there are before an occupied one.
     #[inline(always)]
     pub(super) fn rank(&self, cell: u32) -> Option<u32> {
-        let word = (cell >> 5) as usize * 2;
-        let bits = *self.blocks.get(word)?;
+        let &[bits, before] = self.blocks.get((cell >> 5) as usize)?;
         let bit = 1 << (cell & 31);
         if bits & bit == 0 {
             return None;
         }
-        let before = *self.blocks.get(word | 1)?;
         Some(before.wrapping_add((bits & (bit - 1)).count_ones()))
     }
 }

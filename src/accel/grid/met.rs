@@ -64,20 +64,30 @@ pub struct Met<'a> {
 }
 
 impl<'a> Met<'a> {
-    /// Those of the entries from `first` up to `end` that share a bit with `on_the_way`.
+    /// Those of the entries from `first` up to `end`, if there are such, that share a bit with `on_the_way`.
     #[inline(always)]
-    pub(super) fn new(entries: &'a [u16], first: u32, end: u32, on_the_way: u32) -> Self {
-        // One comparison is then enough for both ends.
-        let entries = if SECOND_FIRST == 0 { entries.get(..end as usize).unwrap_or(&[]) } else { entries };
-        Self {
+    pub(super) fn new(entries: &'a [u16], (first, end): (u32, u32), on_the_way: u32) -> Option<Self> {
+        // One comparison for each entry is then enough for both ends.
+        let entries = if SECOND_FIRST == 0 { entries.get(..end as usize)? } else { entries };
+        Some(Self {
             entries,
             next: first,
             #[cfg(target_endian = "big")]
             end,
             number: 0,
             on_the_way: on_the_way << 8,
-        }
+        })
     }
+
+    /// None.
+    pub(super) const NOTHING: Self = Self {
+        entries: &[],
+        next: 0,
+        #[cfg(target_endian = "big")]
+        end: 0,
+        number: 0,
+        on_the_way: 0,
+    };
 
     /// The next entry.
     #[inline(always)]

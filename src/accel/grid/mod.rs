@@ -182,8 +182,9 @@ impl<'a> Hierarchy for Grid<'a> {
             Axis::Z => (z, nz),
         };
         if count <= 1 {
-            let (first, end) = self.cells.of(cells::index(self.resolution, [x, y, z])).unwrap_or((0, 0));
-            return Inside::Leaf(Met::new(self.entries, first, end, 0xff));
+            let references = self.cells.of(cells::index(self.resolution, [x, y, z]));
+            let met = references.and_then(|references| Met::new(self.entries, references, 0xff));
+            return Inside::Leaf(met.unwrap_or(Met::NOTHING));
         }
         let half = count / 2;
         let with = |first: u32, count: u32| match axis {

@@ -84,8 +84,9 @@ impl<'a> Grid<'a> {
         let grid = Self::view(words).ok_or(malformed((0, Reason::Length)))?;
         grid.check_table(&header, frame.cells()).map_err(malformed)?;
         // Numbers are counted from the beginning of each list.
-        let is_sound = (0..frame.cells() as u32).filter_map(|cell| grid.cells.of(cell)).all(|(first, end)| {
-            Met::new(grid.entries, first, end, 0xff).all(|primitive| primitive < header.primitives)
+        let is_sound = (0..frame.cells() as u32).filter_map(|cell| grid.cells.of(cell)).all(|references| {
+            Met::new(grid.entries, references, 0xff)
+                .is_some_and(|mut met| met.all(|primitive| primitive < header.primitives))
         });
         let lists = words.len().saturating_sub(grid.entries.len() / 2);
         if is_sound { Ok(grid) } else { Err(malformed((lists, Reason::Primitive))) }
@@ -94,8 +95,8 @@ impl<'a> Grid<'a> {
     /// One pass over blocks and offsets: ranks equal the occupied cells so far, and offsets never fall.
     fn check_table(&self, header: &Header, cells: usize) -> Result<(), (usize, Reason)> {
         let mut rank = 0;
-        for (index, block) in self.cells.blocks.chunks_exact(2).enumerate() {
-            let &[bits, before] = block else { continue };
+        for (index, block) in self.cells.blocks.iter().enumerate() {
+            let [bits, before] = *block;
             // No cells behind the last.
             let rest = cells.saturating_sub(index * 32);
             let beyond = if rest < 32 { bits >> rest } else { 0 };
@@ -115,7 +116,7 @@ impl<'a> Grid<'a> {
             let first = entry == 0 && offset != 0;
             let last = entry == header.entries && offset != header.listed;
             if first || last || offset < least || offset > header.listed {
-                return Err((HEADER_WORDS + self.cells.blocks.len(), Reason::References));
+                return Err((HEADER_WORDS + self.cells.blocks.len() * 2, Reason::References));
             }
             if header.form == Form::Octants {
                 let at = |index: u32| self.entries.get((index ^ SECOND_FIRST) as usize).copied().unwrap_or(0);
@@ -147,7 +148,12 @@ impl<'a> Grid<'a> {
         let mask = if header.form == Form::Octants { OFFSET } else { u32::MAX };
         Some(Self {
             words,
-            cells: Cells { blocks, offsets, mask, group: group(header.form, header.primitives as usize) },
+            cells: Cells {
+                blocks: blocks.as_chunks().0,
+                offsets,
+                mask,
+                group: group(header.form, header.primitives as usize),
+            },
             entries: bytemuck::must_cast_slice(entries_of),
             reference_count: header.listed,
             primitives: header.primitives,

@@ -135,7 +135,7 @@ trait Table {
     fn octants(said: u32) -> u32;
 
     /// The first reference and the one behind the last.
-    fn references(&self, cell: u32, said: u32) -> (u32, u32);
+    fn references(&self, cell: u32, said: u32) -> Option<(u32, u32)>;
 }
 
 /// A word per cell: an offset and octants.
@@ -153,9 +153,9 @@ impl Table for Words<'_> {
     }
 
     #[inline(always)]
-    fn references(&self, cell: u32, said: u32) -> (u32, u32) {
-        let next = self.0.get(cell.wrapping_add(1) as usize).copied().unwrap_or(0);
-        (said & OFFSET, next & OFFSET)
+    fn references(&self, cell: u32, said: u32) -> Option<(u32, u32)> {
+        let next = *self.0.get(cell.wrapping_add(1) as usize)?;
+        Some((said & OFFSET, next & OFFSET))
     }
 }
 
@@ -171,8 +171,8 @@ impl Table for Cells<'_> {
     }
 
     #[inline(always)]
-    fn references(&self, _cell: u32, said: u32) -> (u32, u32) {
-        self.offsets.pair(said).unwrap_or((0, 0))
+    fn references(&self, _cell: u32, said: u32) -> Option<(u32, u32)> {
+        self.offsets.pair(said)
     }
 }
 
@@ -227,7 +227,13 @@ impl<'c> Sweep<'c> {
 
     /// To the end of the ray; false if that is not reached, because two crossings are close.
     #[inline(always)]
-    fn run<T: Table>(self, table: T, t_max: f32, mut visit: impl FnMut((u32, u32), u32) -> Option<f32>) -> bool {
+    fn run<'a, T: Table>(
+        self,
+        table: T,
+        entries: &'a [u16],
+        t_max: f32,
+        visit: &mut impl FnMut(Met<'a>) -> Option<f32>,
+    ) -> bool {
         let Self { mut x, mut y, mut z, mut at, mut clear, margin, behind } = self;
         let mut end = least(beyond(t_max) + margin, behind);
         loop {
@@ -235,8 +241,11 @@ impl<'c> Sweep<'c> {
                 let exit = least(least(x.next, y.next), z.next);
                 let (from, to) = (clear - 2.0 * margin, exit + margin);
                 let octants = x.halves(from, to) & y.halves(from, to) & z.halves(from, to);
-                if octants & T::octants(said) != 0 {
-                    let Some(t_max) = visit(table.references(at, said), octants) else { return true };
+                if octants & T::octants(said) != 0
+                    && let Some(references) = table.references(at, said)
+                    && let Some(met) = Met::new(entries, references, octants)
+                {
+                    let Some(t_max) = visit(met) else { return true };
                     end = least(beyond(t_max) + margin, behind);
                 }
             }
@@ -294,9 +303,7 @@ impl<'a> Grid<'a> {
         visit: &mut impl FnMut(Met<'a>) -> Option<f32>,
     ) {
         let Some(sweep) = Sweep::of(&self.course, &self.lattice, ray) else { return };
-        let is_done =
-            sweep.run(table, t_max, |(first, end), octants| visit(Met::new(self.entries, first, end, octants)));
-        if !is_done {
+        if !sweep.run(table, self.entries, t_max, visit) {
             self.walk(ray, t_max, visit);
         }
     }

@@ -242,8 +242,10 @@ impl<'a> GridTraversal<'a> {
                     *budget -= 1;
                 }
                 let cell = self.next_tied();
-                if let Some((first, end)) = self.cells.of(cell) {
-                    return Step::Leaf(Met::new(self.entries, first, end, 0xff));
+                if let Some(references) = self.cells.of(cell)
+                    && let Some(met) = Met::new(self.entries, references, 0xff)
+                {
+                    return Step::Leaf(met);
                 }
                 continue;
             }
@@ -261,10 +263,11 @@ impl<'a> GridTraversal<'a> {
                         }
                         *budget -= 1;
                     }
-                    if let Some((first, end)) = self.cells.of(at) {
+                    if let Some(references) = self.cells.of(at) {
                         let octants = self.on_the_way(ray, enter, limit);
-                        if octants != 0 {
-                            let met = Met::new(self.entries, first, end, octants);
+                        if octants != 0
+                            && let Some(met) = Met::new(self.entries, references, octants)
+                        {
                             break (Next::Plane, Some(Step::Leaf(met)));
                         }
                     }

@@ -71,49 +71,57 @@ impl Corner for (&Lattice, &[u16; 3]) {
 }
 
 /// The corners relative to the ray's origin, sheared so that the ray runs along the third axis.
-pub(super) struct Sheared {
-    x: [f32; 3],
-    y: [f32; 3],
-    z: [f32; 3],
+pub(super) struct Sheared<const N: usize = 3> {
+    x: [f32; N],
+    y: [f32; N],
+    z: [f32; N],
 }
 
-/// [`Sheared`] with the axes in this order; none if `leave` says so of the corners' first coordinates and depths, before
-/// the second are asked for, or of the second.
-#[inline(always)]
-fn in_order(
-    [x, y, z]: [Axis; 3],
-    [a, b, c]: [impl Corner; 3],
-    ray: &PreparedRay,
-    leave: impl Fn([f32; 3], [f32; 3]) -> bool,
-) -> Option<Sheared> {
-    let [ox, oy, oz] = [x, y, z].map(|axis| ray.views[axis as usize].origin);
-    let [sx, sy] = [x, y].map(|axis| ray.shear.slope[axis as usize]);
-    let depths = [a.along(z) - oz, b.along(z) - oz, c.along(z) - oz];
-    let [az, bz, cz] = depths;
-    let first = [(a.along(x) - ox) - sx * az, (b.along(x) - ox) - sx * bz, (c.along(x) - ox) - sx * cz];
-    if leave(first, depths) {
-        return None;
-    }
-    let second = [(a.along(y) - oy) - sy * az, (b.along(y) - oy) - sy * bz, (c.along(y) - oy) - sy * cz];
-    if leave(second, depths) {
-        return None;
-    }
-    Some(Sheared { x: first, y: second, z: depths })
+/// For three corners or four: loops over as many would be a kilobyte more at -Os.
+macro_rules! sheared {
+    ($shear:ident, $in_order:ident, $count:literal: $($corner:ident $depth:ident),+) => {
+        /// [`Sheared`] with the axes in this order; none if `leave` says so of the corners' first coordinates and depths,
+        /// before the second are asked for, or of the second.
+        #[inline(always)]
+        fn $in_order(
+            [x, y, z]: [Axis; 3],
+            [$($corner),+]: [impl Corner; $count],
+            ray: &PreparedRay,
+            leave: impl Fn([f32; $count], [f32; $count]) -> bool,
+        ) -> Option<Sheared<$count>> {
+            let [ox, oy, oz] = [x, y, z].map(|axis| ray.views[axis as usize].origin);
+            let [sx, sy] = [x, y].map(|axis| ray.shear.slope[axis as usize]);
+            let depths = [$($corner.along(z) - oz),+];
+            let [$($depth),+] = depths;
+            let first = [$(($corner.along(x) - ox) - sx * $depth),+];
+            if leave(first, depths) {
+                return None;
+            }
+            let second = [$(($corner.along(y) - oy) - sy * $depth),+];
+            if leave(second, depths) {
+                return None;
+            }
+            Some(Sheared { x: first, y: second, z: depths })
+        }
+
+        /// A way for each major axis: all tests of a ray take the same one, and no address has to be computed.
+        #[inline(always)]
+        pub(super) fn $shear(
+            corners: [impl Corner; $count],
+            ray: &PreparedRay,
+            leave: impl Fn([f32; $count], [f32; $count]) -> bool,
+        ) -> Option<Sheared<$count>> {
+            match ray.shear.major {
+                Axis::X => $in_order([Axis::Y, Axis::Z, Axis::X], corners, ray, leave),
+                Axis::Y => $in_order([Axis::Z, Axis::X, Axis::Y], corners, ray, leave),
+                Axis::Z => $in_order([Axis::X, Axis::Y, Axis::Z], corners, ray, leave),
+            }
+        }
+    };
 }
 
-/// A way for each major axis: all tests of a ray take the same one, and no address has to be computed.
-#[inline(always)]
-pub(super) fn shear(
-    corners: [impl Corner; 3],
-    ray: &PreparedRay,
-    leave: impl Fn([f32; 3], [f32; 3]) -> bool,
-) -> Option<Sheared> {
-    match ray.shear.major {
-        Axis::X => in_order([Axis::Y, Axis::Z, Axis::X], corners, ray, leave),
-        Axis::Y => in_order([Axis::Z, Axis::X, Axis::Y], corners, ray, leave),
-        Axis::Z => in_order([Axis::X, Axis::Y, Axis::Z], corners, ray, leave),
-    }
-}
+sheared!(shear, in_order, 3: a az, b bz, c cz);
+sheared!(shear_quad, quad_in_order, 4: a az, b bz, c cz, d dz);
 
 /// Whether the coordinates along one axis are looked at before anything else is computed: the first ones tell more than a
 /// third of the triangles that are missed, the second ones as many of the rest. On hosts, which cannot predict this, a query
@@ -138,13 +146,26 @@ pub(super) fn edges(s: &Sheared) -> [f32; 3] {
     [cx * by - cy * bx, ax * cy - ay * cx, bx * ay - by * ax]
 }
 
+/// More than `8 u` of slope times all depths, and what underflow takes of it.
+#[inline(always)]
+fn lifted([az, bz, cz]: [f32; 3]) -> f32 {
+    SHEARED * ((az.abs() + bz.abs()) + cz.abs())
+}
+
 /// Whether the ray hits, as far as `f32` can prove it.
 #[inline(always)]
 pub(super) fn test(corners: [impl Corner; 3], ray: &PreparedRay) -> Verdict {
-    let lifted = |[az, bz, cz]: [f32; 3]| SHEARED * ((az.abs() + bz.abs()) + cz.abs());
     let leave = |x, z| ONE_BY_ONE && is_beside(x, (lifted(z) + UNDERFLOW) * LIFT);
-    let Some(s) = shear(corners, ray, leave) else { return Verdict::Miss };
-    let [u, v, w] = edges(&s);
+    match shear(corners, ray, leave) {
+        Some(sheared) => judge(&sheared),
+        None => Verdict::Miss,
+    }
+}
+
+/// The same of corners that are sheared.
+#[inline(always)]
+fn judge(s: &Sheared) -> Verdict {
+    let [u, v, w] = edges(s);
     let ([ax, bx, cx], [ay, by, cy]) = (s.x, s.y);
     let spread = ((ax.abs() + ay.abs()) + (bx.abs() + by.abs())) + (cx.abs() + cy.abs());
 
@@ -160,6 +181,54 @@ pub(super) fn test(corners: [impl Corner; 3], ray: &PreparedRay) -> Verdict {
         (u < -bound) & (v < -bound) & (w < -bound)
     };
     if hit { Verdict::Hit(Certain { edges: [u, v, w], depths: s.z, spread }) } else { Verdict::Unproven }
+}
+
+/// What is proven of two triangles.
+pub(crate) enum Either<T> {
+    /// The ray misses both.
+    Neither,
+    /// It misses the other one than this, 0 or 1, of which this is known.
+    One(u32, T),
+    /// Of neither that the ray misses it.
+    Both,
+}
+
+/// [`test`] of the triangles `a b c` and `a c d` at once.
+#[inline(always)]
+pub(super) fn test_quad(corners: [impl Corner; 4], ray: &PreparedRay) -> Either<Verdict> {
+    let lifted = |[az, bz, cz, dz]: [f32; 4]| SHEARED * (((az.abs() + bz.abs()) + cz.abs()) + dz.abs());
+    let leave = |[a, b, c, d]: [f32; 4], z| {
+        let error = (lifted(z) + UNDERFLOW) * LIFT;
+        if a > error {
+            (b > error) & (c > error) & (d > error)
+        } else {
+            (a < -error) & (b < -error) & (c < -error) & (d < -error)
+        }
+    };
+    let Some(Sheared { x, y, z }) = shear_quad(corners, ray, |x, z| ONE_BY_ONE && leave(x, z)) else {
+        return Either::Neither;
+    };
+    let ([ax, bx, cx, dx], [ay, by, cy, dy]) = (x, y);
+    let spread = (((ax.abs() + ay.abs()) + (bx.abs() + by.abs())) + (cx.abs() + cy.abs())) + (dx.abs() + dy.abs());
+    // No less than that of either triangle, because roundings keep order: what is missed by this is missed by that.
+    let bound = (lifted(z) + spread * (2.0 * U / LIFT)) * (spread * LIFT) + UNDERFLOW;
+    let diagonal = ax * cy - ay * cx;
+    let (ab, bc) = (bx * ay - by * ax, cx * by - cy * bx);
+    let (cd, da) = (dx * cy - dy * cx, ax * dy - ay * dx);
+    // The diagonal runs the other way in the second triangle.
+    let missed = if diagonal > bound {
+        ((ab < -bound) | (bc < -bound), (cd > bound) | (da > bound))
+    } else if diagonal < -bound {
+        ((ab > bound) | (bc > bound), (cd < -bound) | (da < -bound))
+    } else {
+        (false, false)
+    };
+    let third = |[a, b, c, d]: [f32; 4]| if missed.0 { [a, c, d] } else { [a, b, c] };
+    match missed {
+        (true, true) => Either::Neither,
+        (false, false) => Either::Both,
+        _ => Either::One(missed.0.into(), judge(&Sheared { x: third(x), y: third(y), z: third(z) })),
+    }
 }
 
 impl Certain {

@@ -16,7 +16,8 @@ mod shortcut_lanes;
 
 use glam::Vec3;
 
-use self::filter::{Corner, Verdict};
+use self::filter::Verdict;
+pub(crate) use self::filter::{Corner, Either};
 #[cfg(feature = "std")]
 pub(crate) use self::{
     lanes::{Possible, ShearLanes, Wedge},
@@ -90,6 +91,30 @@ pub(crate) fn intersect<C: Corner>(
     }
 }
 
+/// [`intersect`] of the triangles `a b c` and `a c d`, where the ray misses one of them; `certify` is the slow tiers for the other.
+#[inline(always)]
+pub(crate) fn intersect_quad<C: Corner>(
+    corners: [C; 4],
+    ray: &PreparedRay,
+    limits: impl Fn() -> (f32, f32),
+    certify: impl Fn(u32, Option<bool>) -> Option<Crossing>,
+) -> Either<Crossing> {
+    let (number, verdict) = match filter::test_quad(corners, ray) {
+        Either::Neither => return Either::Neither,
+        Either::Both => return Either::Both,
+        Either::One(number, verdict) => (number, verdict),
+    };
+    let crossing = match verdict {
+        Verdict::Miss => None,
+        Verdict::Hit(certain) => match certain.place(ray, limits()) {
+            Some(crossing) if crossing.t.is_nan() => certify(number, Some(crossing.front)),
+            proven => proven,
+        },
+        Verdict::Unproven => certify(number, None),
+    };
+    crossing.map_or(Either::Neither, |crossing| Either::One(number, crossing))
+}
+
 /// The slow tiers; `front` is known if the filter has proven the hit.
 ///
 /// Corners one by one, because an array would be filled for those that are missed, too.
@@ -137,7 +162,7 @@ impl Triangle {
 
     /// The slow tiers for all kinds of corners.
     #[inline(never)]
-    fn certify(&self, ray: &PreparedRay, limits: (f32, f32), front: Option<bool>) -> Option<Crossing> {
+    pub(crate) fn certify(&self, ray: &PreparedRay, limits: (f32, f32), front: Option<bool>) -> Option<Crossing> {
         if is_outside(self, ray, limits) { None } else { self.decide(ray, front) }
     }
 

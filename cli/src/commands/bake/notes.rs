@@ -19,7 +19,9 @@ impl Bake {
     /// those of the model.
     pub fn notes(&self, model: &Mesh<'_>, kind: Option<Kind>, is_ordered: bool) -> String {
         let mut text = String::new();
-        if is_ordered && !self.keep_numbers {
+        if self.quads {
+            text += "triangles stand in pairs, for a `QuadMesh`: numbers are not the model's\n";
+        } else if is_ordered && !self.keep_numbers {
             text +=
                 "triangles stand in the order of the leaves: numbers are not the model's (--keep-numbers keeps them)\n";
         }

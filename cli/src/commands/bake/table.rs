@@ -27,6 +27,7 @@ pub fn table(
             Kind::Vertices
             | Kind::LatticeVertices
             | Kind::Meshlets
+            | Kind::Quads
             | Kind::NarrowIndices
             | Kind::WideIndices
             | Kind::Normals

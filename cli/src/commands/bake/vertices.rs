@@ -4,9 +4,10 @@ use hitscan::{
     bake::{self, Baker, InMeshlets, OnLattice},
     bvh,
     glam::Vec3,
-    primitives::Indices,
+    primitives::{Indices, QuadMesh},
 };
 
+use super::super::predict;
 use crate::{
     chip::{self, Chip},
     failure::Failure,
@@ -35,7 +36,7 @@ impl Vertices {
     }
 
     /// In the order that meshlets take.
-    pub fn ordered(&self, meshlets: &InMeshlets) -> Self {
+    pub fn ordered<const CORNERS: usize>(&self, meshlets: &InMeshlets<CORNERS>) -> Self {
         let on_lattice = |snapped: &OnLattice| OnLattice { vertices: meshlets.vertices(&snapped.vertices), ..*snapped };
         Self {
             positions: meshlets.vertices(&self.positions),
@@ -53,9 +54,9 @@ impl Vertices {
         structure: Option<Structure<'_>>,
         numbers: Option<&Vec<u32>>,
     ) -> Result<Vec<u32>, Failure> {
-        let mut baker = match self.triangles(indices)? {
-            Triangles::Plain(mesh) => Baker::new().mesh(&mesh),
-            Triangles::OnLattice(mesh) => Baker::new().lattice_mesh(&mesh),
+        let mut baker = match &self.snapped {
+            None => Baker::new().mesh(&Mesh::new(&self.positions, indices).map_err(broken)?),
+            Some(snapped) => Baker::new().lattice_mesh(&snapped.mesh(indices).map_err(broken)?),
         };
         if let Some(normals) = &self.normals {
             baker = baker.normals(normals);
@@ -84,6 +85,18 @@ impl Vertices {
         let meshlets = bake::meshlets(indices);
         self.ordered(&meshlets).bake(meshlets.indices(), palette, structure, numbers)
     }
+
+    /// The same, with the corners of pairs.
+    pub fn bake_quads(
+        &self,
+        indices: Indices<'_>,
+        palette: &Palette,
+        structure: Option<Structure<'_>>,
+        numbers: Option<&Vec<u32>>,
+    ) -> Result<Vec<u32>, Failure> {
+        let quads = bake::quads(indices).map_err(broken)?;
+        self.ordered(&quads).bake(quads.indices(), palette, structure, numbers)
+    }
 }
 
 /// An order of triangles in which neighbours follow one another: that of a hierarchy's leaves.
@@ -105,22 +118,54 @@ pub enum Triangles<'a> {
     Plain(Mesh<'a>),
     /// Between places on a lattice.
     OnLattice(LatticeMesh<'a>),
+    /// In pairs.
+    Pairs(QuadMesh<Mesh<'a>>),
+    /// Both.
+    PairsOnLattice(QuadMesh<LatticeMesh<'a>>),
+}
+
+/// What is done with the triangles, of whichever kind.
+macro_rules! any {
+    ($triangles:expr, $mesh:ident => $result:expr) => {
+        match $triangles {
+            Triangles::Plain($mesh) => $result,
+            Triangles::OnLattice($mesh) => $result,
+            Triangles::Pairs($mesh) => $result,
+            Triangles::PairsOnLattice($mesh) => $result,
+        }
+    };
 }
 
 impl Triangles<'_> {
+    /// The same two at a time, as they stand.
+    pub fn in_pairs(self) -> Result<Self, Failure> {
+        Ok(match self {
+            Self::Plain(mesh) => Self::Pairs(QuadMesh::new(mesh).map_err(broken)?),
+            Self::OnLattice(mesh) => Self::PairsOnLattice(QuadMesh::new(mesh).map_err(broken)?),
+            pairs => pairs,
+        })
+    }
+
     /// A structure over them, and the order of its leaves.
     pub fn build(&self, choice: Choice, preset: Preset, most: Option<usize>) -> Result<(Built, Vec<u32>), Failure> {
-        match self {
-            Self::Plain(mesh) => Built::within(mesh, choice, preset, most)?.ordered(mesh),
-            Self::OnLattice(mesh) => Built::within(mesh, choice, preset, most)?.ordered(mesh),
-        }
+        any!(self, mesh => Built::within(mesh, choice, preset, most)?.ordered(mesh)).map(|built| self.spread(built))
     }
 
     /// The structure over them that is fastest on a chip, and the order of its leaves.
     pub fn choose(&self, chip: Chip, choice: Choice, most: Option<usize>) -> Result<(Built, Vec<u32>), Failure> {
+        any!(self, mesh => chip::choose(mesh, chip, choice, most)?.ordered(mesh)).map(|built| self.spread(built))
+    }
+
+    /// An order of triangles, not of pairs.
+    fn spread(&self, (built, order): (Built, Vec<u32>)) -> (Built, Vec<u32>) {
         match self {
-            Self::Plain(mesh) => chip::choose(mesh, chip, choice, most)?.ordered(mesh),
-            Self::OnLattice(mesh) => chip::choose(mesh, chip, choice, most)?.ordered(mesh),
+            Self::Plain(_) | Self::OnLattice(_) => (built, order),
+            _ => (built, order.into_iter().flat_map(|quad| [2 * quad, 2 * quad + 1]).collect()),
         }
+    }
+
+    /// Adds what an asset of so many bytes, with a structure over them, will cost on a chip.
+    pub fn predict(&self, text: &mut String, chip: Chip, built: &Built, asset: usize) -> Result<(), Failure> {
+        any!(self, mesh => predict(text, chip, built, mesh, asset))
     }
 }

@@ -3,7 +3,12 @@ mod world;
 use std::{path::PathBuf, process::ExitCode};
 
 use hitscan::{
-    LatticeMesh, Mesh, Primitives, accel::Structure, asset::Asset, bake, geometry::Aabb, primitives::Indices,
+    LatticeMesh, Mesh, Primitives,
+    accel::Structure,
+    asset::Asset,
+    bake,
+    geometry::Aabb,
+    primitives::{Indices, QuadMesh},
 };
 
 use super::{line, predict, print};
@@ -59,6 +64,10 @@ impl Info {
         if let Some(chip) = self.target {
             let asset = asset.unwrap_or_else(|| bytes_of(&view.mesh) + built.bytes());
             match on_lattice(&source) {
+                _ if view.in_pairs && self.structure.structure.is_none() => {
+                    let pairs = QuadMesh::new(view.mesh).map_err(broken)?;
+                    predict(&mut text, chip, &built, &pairs, asset)?;
+                }
                 Some(mesh) => predict(&mut text, chip, &built, &mesh, asset)?,
                 None if view.soup.is_some() && self.structure.structure.is_none() => {
                     line(
@@ -130,6 +139,7 @@ fn bytes_of(mesh: &Mesh<'_>) -> usize {
         Indices::Narrow(list) => size_of_val(list),
         Indices::Wide(list) => size_of_val(list),
         Indices::Meshlets(meshlets) => size_of_val(meshlets.corners()) + size_of_val(meshlets.first()),
+        Indices::Quads(quads) => size_of_val(quads.corners()) + size_of_val(quads.first()),
     };
     size_of_val(mesh.vertices()) + corners
 }

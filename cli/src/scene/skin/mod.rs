@@ -65,7 +65,7 @@ impl Skin {
     }
 
     /// That of the same vertices in the order that meshlets take.
-    pub fn ordered(&self, meshlets: &InMeshlets) -> Self {
+    pub fn ordered<const CORNERS: usize>(&self, meshlets: &InMeshlets<CORNERS>) -> Self {
         Self { coordinates: meshlets.vertices(&self.coordinates), sheets: self.sheets.clone() }
     }
 

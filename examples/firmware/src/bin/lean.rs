@@ -17,21 +17,28 @@ use hitscan::Bvh as Structure;
 use hitscan::CompactKdTree as Structure;
 #[cfg(any(feature = "dual-split", feature = "lattice-dual-split"))]
 use hitscan::DualSplit as Structure;
-#[cfg(feature = "grid")]
+#[cfg(any(feature = "grid", feature = "grid-quads"))]
 use hitscan::Grid as Structure;
 #[cfg(feature = "kdtree")]
 use hitscan::KdTree as Structure;
 #[cfg(feature = "octree")]
 use hitscan::Octree as Structure;
 
+#[cfg(feature = "lattice")]
+type Triangles = hitscan::LatticeMesh<'static>;
+#[cfg(feature = "grid-quads")]
+type Triangles = hitscan::primitives::QuadMesh<hitscan::Mesh<'static>>;
+#[cfg(all(feature = "structure", not(any(feature = "lattice", feature = "grid-quads"))))]
+type Triangles = hitscan::Mesh<'static>;
+
 /// Whether a ray's two queries agree.
 #[cfg(feature = "structure")]
 fn agree() -> Result<bool, hitscan::Error> {
     let asset = hitscan::asset::Asset::open(black_box(KNOT.bytes))?;
     #[cfg(not(feature = "lattice"))]
-    let scene = asset.scene::<Structure, hitscan::Mesh>()?;
+    let scene = asset.scene::<Structure, Triangles>()?;
     #[cfg(feature = "lattice")]
-    let scene = asset.lattice_scene::<Structure, hitscan::LatticeMesh>()?;
+    let scene = asset.lattice_scene::<Structure, Triangles>()?;
     let mut rays = camera::row(camera::HEIGHT / 2);
     Ok(rays.all(|ray| scene.closest_hit(&ray).is_some() == scene.any_hit(&ray)))
 }

@@ -60,6 +60,15 @@ fn what_shaders_do_not_know_is_refused() {
         let asset = Asset::from_words(&words).unwrap();
         assert_eq!(Layout::of(&asset).unwrap_err(), Unfit::Structure);
     }
+    let quads = bake::quads(&bake::pairs(&mesh).corners[..]).unwrap();
+    let moved = quads.vertices(&vertices);
+    let pairs = Mesh::new(&moved, quads.indices()).unwrap();
+    let words = bake::build(&pairs, &plans()[0]).unwrap();
+    let structure = Structure::open(plans()[0].kind().unwrap(), &words).unwrap();
+    let words = Baker::new().mesh(&pairs).structure(structure).finish();
+    let asset = Asset::from_words(&words).unwrap();
+    assert_eq!(Layout::of(&asset).unwrap_err(), Unfit::Pairs);
+    assert!(World::read(&asset, &Parts::read(&asset).unwrap()).unwrap_err().to_string().contains("without --quads"));
     let far = [Vec3::ZERO, Vec3::X * 3.0e10, Vec3::Y];
     let words = baker(&far, &[[0, 1, 2]], &plans()[0], Form::Plain).unwrap().finish();
     let refused = Layout::of(&Asset::from_words(&words).unwrap()).unwrap_err();
