@@ -2,10 +2,10 @@
 
 #[cfg(feature = "lattice")]
 use engine::LatticeMesh;
-#[cfg(feature = "numbers")]
-use engine::primitives::Reordered;
 #[cfg(feature = "quads")]
 use engine::primitives::QuadMesh;
+#[cfg(feature = "numbers")]
+use engine::primitives::Reordered;
 use engine::{
     Hit, Mesh, PreparedRay, Primitives, Ray, Span,
     asset::{Asset, Kind},

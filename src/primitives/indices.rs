@@ -49,8 +49,10 @@ impl<'a> Indices<'a> {
             Self::Wide(list) => list.get(triangle as usize).copied(),
             Self::Meshlets(meshlets) => meshlets.get(triangle),
             Self::Quads(quads) => {
-                let [a, b, c, d] = quads.get(triangle / 2)?;
-                Some(if triangle & 1 == 0 { [a, b, c] } else { [a, c, d] })
+                let &first = quads.first().get(triangle as usize / (2 * Meshlets::<4>::SIZE))?;
+                let &[a, b, c, d] = quads.corners().get(triangle as usize / 2)?;
+                let [b, c] = if triangle & 1 == 0 { [b, c] } else { [c, d] };
+                Some([a, b, c].map(|corner| first.wrapping_add(u32::from(corner))))
             }
         }
     }
