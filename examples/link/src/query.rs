@@ -83,7 +83,12 @@ fn quads(mesh: &Mesh<'_>) {
     let Ok(quads) = Meshlets::new(some(word, &mut first), corners) else { return };
     lattice(quads.into());
     if let Ok(pairs) = Mesh::new(mesh.vertices(), quads).and_then(QuadMesh::new) {
-        with(&pairs);
+        // By the list alone: what structures do with primitives is linked with others.
+        asked(&pairs);
+        if let Ok(list) = List::new(&pairs) {
+            cast(Scene::new(list, &pairs));
+            near(Scene::new(list, &pairs));
+        }
         black_box((pairs.mesh().quads(), pairs.mesh().len()));
         let hit = || black_box(Hit { t: float(), primitive: word() });
         if let Some(ray) = ray().prepare() {
