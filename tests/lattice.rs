@@ -4,7 +4,10 @@
 
 mod common;
 
-use common::{FAMILIES, Random, adversarial_mesh, adversarial_ray, bits, plans, seal::sealed};
+use common::{
+    FAMILIES, Random, adversarial_mesh, adversarial_ray, bits, plans,
+    seal::{every_byte, every_length, place, sealed},
+};
 use hitscan::{
     Accelerator, DualSplit, Error, LatticeMesh, List, Mesh, Primitives, Ray, Scene,
     accel::{Plan, Structure},
@@ -167,29 +170,18 @@ fn what_is_baked_is_read_back() {
 fn damaged_sections_are_refused_or_harmless() {
     let numbers = [[0_u16, 0, 0], [60_000, 3, 9], [7, 50_000, 1], [9, 9, 40_000], [1, 2, 3]];
     let words = baked(&[[0, 1, 2], [0, 1, 3], [1, 2, 4]], &numbers);
-    for length in 6..words.len() {
-        let mut shorter = words[..length].to_vec();
-        shorter[3] = length as u32;
-        assert!(exercise(&sealed(shorter)).is_err(), "{length}");
-    }
+    assert!(every_length(&words).all(|shorter| exercise(&shorter).is_err()));
     let (mut refused, mut harmless) = (0, 0);
-    for index in 0..words.len() {
-        for shift in [0, 8, 16, 24] {
-            for value in 0..=255 {
-                let mut damaged = words.clone();
-                damaged[index] = damaged[index] & !(0xff << shift) | (value << shift);
-                match exercise(&sealed(damaged)) {
-                    Ok(()) => harmless += 1,
-                    Err(_) => refused += 1,
-                }
-            }
+    for damaged in every_byte(&words) {
+        match exercise(&sealed(damaged)) {
+            Ok(()) => harmless += 1,
+            Err(_) => refused += 1,
         }
     }
     assert!(refused > 5_000 && harmless > 5_000, "{refused} {harmless}");
     // One vertex more or less than there is room for.
     let asset = Asset::from_words(&words).unwrap();
-    let section = asset.section(Kind::LatticeVertices).unwrap().as_ptr();
-    let first = words.iter().position(|word| std::ptr::eq(word, section)).unwrap();
+    let first = place(&words, asset.section(Kind::LatticeVertices).unwrap());
     for count in [0, 4, 6, u32::MAX, 0x5555_5555] {
         let mut damaged = words.clone();
         damaged[first] = count;

@@ -4,7 +4,12 @@
 
 mod common;
 
-use common::{Random, adversarial_mesh, adversarial_ray, bits, rays, seal::sealed};
+use common::{
+    Random, adversarial_mesh, adversarial_ray, bits,
+    meshes::sheet,
+    rays,
+    seal::{every_byte, every_length, every_lie, place, sealed},
+};
 use hitscan::{
     Error, LatticeMesh, LatticeScene, List, Mesh, Primitives, Ray, Scene,
     accel::{Plan, Structure},
@@ -15,25 +20,6 @@ use hitscan::{
     grid,
     primitives::{Indices, MeshError, Meshlets},
 };
-
-/// A square of `side` x `side` x 2 triangles, row by row.
-fn sheet(side: u32) -> (Vec<Vec3>, Vec<[u32; 3]>) {
-    let places = (0..=side).flat_map(|y| (0..=side).map(move |x| Vec3::new(x as f32, ((x * y) % 7) as f32, y as f32)));
-    let squares = (0..side).flat_map(|y| (0..side).map(move |x| y * (side + 1) + x));
-    let below = side + 1;
-    (
-        places.collect(),
-        squares.flat_map(|at| [[at, at + 1, at + below], [at + 1, at + below + 1, at + below]]).collect(),
-    )
-}
-
-/// Triangles in another order, by chance.
-fn shuffled(random: &mut Random, mut triangles: Vec<[u32; 3]>) -> Vec<[u32; 3]> {
-    for end in (1..triangles.len()).rev() {
-        triangles.swap(end, random.below(end + 1));
-    }
-    triangles
-}
 
 #[test]
 fn triangles_stay_as_they_were() {
@@ -62,7 +48,8 @@ fn few_vertices_stand_several_times_if_triangles_are_neighbours() {
     let (vertices, triangles) = sheet(60);
     let mesh = Mesh::new(&vertices, &triangles[..]).unwrap();
     assert!(bake::meshlets(&mesh).order.len() <= vertices.len() * 102 / 100);
-    let triangles = shuffled(&mut Random::new(82), triangles);
+    let mut triangles = triangles;
+    Random::new(82).shuffle(&mut triangles);
     let mesh = Mesh::new(&vertices, &triangles[..]).unwrap();
     assert!(bake::meshlets(&mesh).order.len() > vertices.len() * 4);
     // The order of a hierarchy's leaves mends that.
@@ -157,31 +144,19 @@ fn sections_are_read_back_or_refused() {
         assert!(asset.read::<LatticeMesh>().is_err());
 
         // Counts that lie, as long as the section is.
-        let first = words.iter().position(|word| std::ptr::eq(word, section.as_ptr())).unwrap();
-        let count = words[first];
-        for lie in [0, count - 1, count + 1, count + 64, 1 << 30, 0x5555_5555, 0xffff_fff0, u32::MAX] {
-            let mut damaged = words.clone();
-            damaged[first] = lie;
+        for (lie, damaged) in every_lie(&words, place(&words, section), 64) {
             let padded = (lie as usize).div_ceil(64) + (lie as usize * 3).div_ceil(4) == section.len() - 1;
-            assert_eq!(exercise(&sealed(damaged)).is_ok(), padded, "{lie}");
+            assert_eq!(exercise(&damaged).is_ok(), padded, "{lie}");
         }
     }
     let (vertices, triangles) = sheet(2);
     let words = baked(&vertices, &triangles);
-    for length in 6..words.len() {
-        let mut shorter = words[..length].to_vec();
-        shorter[3] = length as u32;
-        assert!(exercise(&sealed(shorter)).is_err(), "{length}");
-    }
+    assert!(every_length(&words).all(|shorter| exercise(&shorter).is_err()));
     let (mut refused, mut harmless) = (0, 0);
-    for index in 0..words.len() {
-        for (shift, value) in [0, 8, 16, 24].into_iter().flat_map(|shift| (0..=255).map(move |value| (shift, value))) {
-            let mut damaged = words.clone();
-            damaged[index] = damaged[index] & !(0xff << shift) | (value << shift);
-            match exercise(&sealed(damaged)) {
-                Ok(()) => harmless += 1,
-                Err(_) => refused += 1,
-            }
+    for damaged in every_byte(&words) {
+        match exercise(&sealed(damaged)) {
+            Ok(()) => harmless += 1,
+            Err(_) => refused += 1,
         }
     }
     assert!(refused > 5_000 && harmless > 5_000, "{refused} {harmless}");

@@ -173,7 +173,10 @@ impl Transform {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{math::greatest, testing::Random};
+    use crate::{
+        math::greatest,
+        testing::{Random, cases},
+    };
 
     #[test]
     fn singular_and_non_finite_maps_are_refused() {
@@ -196,7 +199,7 @@ mod tests {
     #[test]
     fn errors_grow_as_far_as_is_said_and_no_farther() {
         let mut random = Random::new(5);
-        for _ in 0..2000 {
+        for _ in 0..cases(2000) {
             let mut number = |scale: f32| (random.unit() - 0.5) * scale;
             let mut column = |scale: f32| Vec3::new(number(2.0), number(2.0), number(2.0)) * scale;
             let linear = Mat3::from_cols(column(1.0), column(0.01), column(30.0));

@@ -59,6 +59,13 @@ impl Random {
         (self.next() >> 8) as f32 / 16_777_216.0
     }
 
+    /// Any order, as likely as any other.
+    pub fn shuffle<T>(&mut self, list: &mut [T]) {
+        for end in (1..list.len()).rev() {
+            list.swap(end, self.below(end + 1));
+        }
+    }
+
     pub fn pick<T: Copy>(&mut self, list: &[T]) -> T {
         list[self.below(list.len())]
     }

@@ -1,7 +1,7 @@
 //! Bounding volume hierarchies: equal to the list, before and after their primitives move; memory; open; quality.
 
 use crate::common::meshes::{crossing, identical, separate, sheet};
-use crate::common::{FAMILIES, Random, adversarial_mesh, adversarial_ray, bits, boxed, noise, point};
+use crate::common::{FAMILIES, Random, adversarial_mesh, adversarial_ray, bits, boxed, noise, point, seal::every_byte};
 use hitscan::{
     Accelerator, Arena, Bvh, Error, List, Mesh, Primitives, Ray, Scene, Traversal,
     accel::{Hierarchy, Inside, Reason, Step},
@@ -385,16 +385,10 @@ fn every_byte_set_to_every_value_is_refused_or_harmless() {
             let whole = length == Bvh::open(&words).unwrap().ordered().as_words().len();
             assert_eq!(exercise(&words[..length]).is_ok(), whole, "{length} of {}", words.len());
         }
-        for index in 0..words.len() {
-            for shift in [0, 8, 16, 24] {
-                for value in 0..=255 {
-                    let mut damaged = words.clone();
-                    damaged[index] = damaged[index] & !(0xff << shift) | (value << shift);
-                    match exercise(&damaged) {
-                        Ok(()) => harmless += 1,
-                        Err(_) => refused += 1,
-                    }
-                }
+        for damaged in every_byte(&words) {
+            match exercise(&damaged) {
+                Ok(()) => harmless += 1,
+                Err(_) => refused += 1,
             }
         }
     }

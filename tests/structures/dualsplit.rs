@@ -1,7 +1,7 @@
 //! The dual-split tree: exact, bounded, checked when opened, and worth its bytes.
 
 use crate::common::meshes::{separate, sheet};
-use crate::common::{FAMILIES, Random, adversarial_mesh, adversarial_ray, bits, boxed, noise};
+use crate::common::{FAMILIES, Random, adversarial_mesh, adversarial_ray, bits, boxed, noise, seal::every_byte};
 use hitscan::{
     Accelerator, Arena, DualSplit, Hit, List, Mesh, Primitives, Ray, Scene, Span, Traversal,
     accel::{Hierarchy, Inside, MAX_LEVELS, Reason, Step},
@@ -266,16 +266,10 @@ fn every_byte_set_to_every_value_is_refused_or_harmless() {
     let (mut refused, mut harmless) = (0, 0);
     for seed in 0..6 {
         let words = some_words(seed, 12, 1 + seed as u32 % 3);
-        for index in 0..words.len() {
-            for shift in [0, 8, 16, 24] {
-                for value in 0..=255 {
-                    let mut damaged = words.clone();
-                    damaged[index] = damaged[index] & !(0xff << shift) | (value << shift);
-                    match exercise(&damaged) {
-                        Ok(()) => harmless += 1,
-                        Err(_) => refused += 1,
-                    }
-                }
+        for damaged in every_byte(&words) {
+            match exercise(&damaged) {
+                Ok(()) => harmless += 1,
+                Err(_) => refused += 1,
             }
         }
     }

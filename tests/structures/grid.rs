@@ -1,7 +1,7 @@
 //! Grids answer as the list does, fit into what they promise, and refuse what is not a grid.
 
 use crate::common::meshes::{Triangles, crossing, hair, identical, random, separate};
-use crate::common::{FAMILIES, Random, adversarial_mesh, adversarial_ray, bits, boxed, noise};
+use crate::common::{FAMILIES, Random, adversarial_mesh, adversarial_ray, bits, boxed, noise, seal::every_byte};
 use hitscan::{
     Accelerator, Arena, Grid, Hit, List, Mesh, Primitives, Ray, Scene, Traversal,
     accel::{Cell, Hierarchy, Inside, MAX_LEVELS, Mailbox, Reason, Step},
@@ -223,16 +223,10 @@ fn damaged_words_are_refused_or_harmless() {
         for length in 0..words.len() {
             assert_eq!(exercise(&words[..length], &mesh), Err(Reason::Length), "{length}");
         }
-        for index in 0..words.len() {
-            for shift in [0, 8, 16, 24] {
-                for value in 0..=255 {
-                    let mut damaged = words.clone();
-                    damaged[index] = damaged[index] & !(0xff << shift) | (value << shift);
-                    match exercise(&damaged, &mesh) {
-                        Ok(()) => harmless += 1,
-                        Err(_) => refused += 1,
-                    }
-                }
+        for damaged in every_byte(&words) {
+            match exercise(&damaged, &mesh) {
+                Ok(()) => harmless += 1,
+                Err(_) => refused += 1,
             }
         }
     }

@@ -3,7 +3,7 @@
 use std::f32::consts::{PI, TAU};
 
 use crate::common::meshes::{Triangles, crossing, hair, identical, random, separate, shrinking};
-use crate::common::{FAMILIES, Random, adversarial_mesh, adversarial_ray, bits, boxed, noise};
+use crate::common::{FAMILIES, Random, adversarial_mesh, adversarial_ray, bits, boxed, noise, seal::every_byte};
 use hitscan::{
     Accelerator, Arena, Hit, List, Mesh, Octree, Primitives, Ray, Scene, Span, Traversal,
     accel::{Hierarchy, Inside, MAX_LEVELS, Reason, Step},
@@ -251,16 +251,10 @@ fn every_byte_set_to_every_value_is_refused_or_harmless() {
         let (vertices, triangles) = soup(seed, 6);
         let mesh = Mesh::new(&vertices, &triangles[..]).unwrap();
         let words = baked(&mesh, &Options { leaf_size: 1 + seed as u32 % 3, ..Options::fast() });
-        for index in 0..words.len() {
-            for shift in [0, 8, 16, 24] {
-                for value in 0..=255 {
-                    let mut damaged = words.clone();
-                    damaged[index] = damaged[index] & !(0xff << shift) | (value << shift);
-                    match exercise(&damaged, &mesh) {
-                        Ok(()) => harmless += 1,
-                        Err(_) => refused += 1,
-                    }
-                }
+        for damaged in every_byte(&words) {
+            match exercise(&damaged, &mesh) {
+                Ok(()) => harmless += 1,
+                Err(_) => refused += 1,
             }
         }
     }

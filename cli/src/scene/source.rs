@@ -166,6 +166,7 @@ impl Source {
                 let asset = Asset::from_words(words).map_err(|error| damaged(error.into()))?;
                 let has = |kind| asset.sections().any(|section| section.kind == kind);
                 let mesh = match unpacked {
+                    // What is unpacked are corners; that these are of pairs, only the asset's own say.
                     Some(geometry) if has(Kind::Quads) => {
                         let indices: Indices<'_> = asset.read().map_err(damaged)?;
                         Mesh::new(&geometry.vertices, indices).map_err(|error| damaged(error.into()))?

@@ -5,6 +5,7 @@ mod cast;
 mod compare;
 mod failures;
 mod folder;
+mod packing;
 mod parts;
 mod render;
 mod textures;

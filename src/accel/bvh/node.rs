@@ -141,7 +141,7 @@ mod tests {
     use glam::Vec3;
 
     use super::*;
-    use crate::testing::Random;
+    use crate::testing::{Random, cases};
 
     #[test]
     fn links_hold_28_bits_beside_the_count() {
@@ -161,7 +161,7 @@ mod tests {
         let mut point = || Vec3::from_array([0; 3].map(|_| random.unit() * 9.0 - 4.0));
         let whole = Aabb::new(Vec3::splat(-4.0), Vec3::splat(5.0));
         let lattice = Lattice::over(&whole, [65_535; 3]);
-        for _ in 0..1000 {
+        for _ in 0..cases(1000) {
             let (a, b) = (Aabb::around([point(), point()]), Aabb::around([point(), point()]));
             let [one, two, both] = [a, b, a.union(&b)].map(|bounds| Planes::around(&bounds, &lattice));
             assert_eq!(one.union(two), both);

@@ -109,7 +109,7 @@ mod tests {
 
     #[test]
     fn floats_are_taken_apart_and_multiplied() {
-        for bits in (0..0x7f80_0000).step_by(99_991) {
+        for bits in (0..0x7f80_0000).step_by(every(99_991)) {
             let x = f32::from_bits(bits);
             for x in [x, -x] {
                 let scaled = Scaled::new(x);

@@ -77,7 +77,7 @@ pub(super) struct Sheared<const N: usize = 3> {
     z: [f32; N],
 }
 
-/// For three corners or four: loops over as many would be a kilobyte more at -Os.
+/// For three corners or four: loops over as many would be 600 bytes more at -Os.
 macro_rules! sheared {
     ($shear:ident, $in_order:ident, $count:literal: $($corner:ident $depth:ident),+) => {
         /// [`Sheared`] with the axes in this order; none if `leave` says so of the corners' first coordinates and depths,

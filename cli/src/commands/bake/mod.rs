@@ -17,7 +17,7 @@ use hitscan::{
 use self::{
     fit::Fit,
     table::table,
-    vertices::{Vertices, dressed, neighbours},
+    vertices::{Packing, Vertices, dressed, neighbours},
 };
 use super::print;
 use crate::{
@@ -115,13 +115,9 @@ impl Bake {
             skin: geometry.skin.as_deref().cloned(),
         };
         let palette = &geometry.palette;
-        let bake = match (self.meshlets, self.quads) {
-            (true, _) => Vertices::bake_meshlets,
-            (_, true) => Vertices::bake_quads,
-            _ => Vertices::bake,
-        };
+        let (packing, is_packed) = (self.packing(), self.is_packed());
         let unmoved: Vec<u32> = (0..model.len()).collect();
-        let mut near = if self.is_packed() { neighbours(&model)? } else { unmoved.clone() };
+        let mut near = if is_packed { neighbours(&model)? } else { unmoved.clone() };
         let mut corners = bake::reorder(&model, &near);
         if self.quads {
             let pairs = bake::pairs(&Mesh::new(model.vertices(), &corners[..]).map_err(broken)?);
@@ -136,7 +132,7 @@ impl Bake {
             None => vertices.triangles(model.indices())?,
         };
         let numbers = self.keep_numbers.then_some(&unmoved);
-        let bare = bake(&vertices, model.indices(), palette, None, numbers)?.len() * 4;
+        let bare = vertices.bake(packing, model.indices(), palette, None, numbers)?.len() * 4;
         // What there was too much, because vertices stand several times in the order of the leaves.
         let mut excess = 0;
         let (built, corners, words, order) = loop {
@@ -159,11 +155,11 @@ impl Bake {
             let palette = if keeps { palette.clone() } else { palette.reordered(&order) };
             let mesh = Mesh::new(model.vertices(), &corners[..]).map_err(broken)?;
             let numbers = keeps.then_some(&order);
-            let words = bake(&vertices, mesh.indices(), &palette, Some(built.structure(&mesh)?), numbers)?;
+            let words = vertices.bake(packing, mesh.indices(), &palette, Some(built.structure(&mesh)?), numbers)?;
             let bytes = words.len() * 4;
             match fit.filter(|fit| bytes > fit.most) {
                 None => break (built, corners, words, order),
-                Some(Fit { most, .. }) if self.is_packed() && excess == 0 && bytes - most < built.bytes() => {
+                Some(Fit { most, .. }) if is_packed && excess == 0 && bytes - most < built.bytes() => {
                     excess = bytes - most;
                 }
                 Some(fit) => return Err(fit.refuse(&built.name, bytes.saturating_sub(fit.rest))),
@@ -198,9 +194,17 @@ impl Bake {
         self.report(&table(&words, &built, &structure, geometry.len(), &self.output)?)
     }
 
+    const fn packing(&self) -> Packing {
+        match (self.meshlets, self.quads) {
+            (true, _) => Packing::Meshlets,
+            (_, true) => Packing::Quads,
+            _ => Packing::Plain,
+        }
+    }
+
     /// Whether corners are stored in bytes.
-    const fn is_packed(&self) -> bool {
-        self.meshlets || self.quads
+    fn is_packed(&self) -> bool {
+        self.packing() != Packing::Plain
     }
 
     /// What could take fewer bytes, of what was not asked for yet.

@@ -14,6 +14,17 @@ use crate::{
     scene::{Built, Choice, Palette, Preset, Skin, broken},
 };
 
+/// How the corners of triangles are stored.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Packing {
+    /// As numbers of vertices.
+    Plain,
+    /// In bytes, three a triangle.
+    Meshlets,
+    /// In bytes, four a pair of triangles.
+    Quads,
+}
+
 /// What is stored of vertices.
 pub struct Vertices {
     /// Positions.
@@ -49,6 +60,27 @@ impl Vertices {
     /// An asset of them and the triangles between them.
     pub fn bake(
         &self,
+        packing: Packing,
+        indices: Indices<'_>,
+        palette: &Palette,
+        structure: Option<Structure<'_>>,
+        numbers: Option<&Vec<u32>>,
+    ) -> Result<Vec<u32>, Failure> {
+        match packing {
+            Packing::Plain => self.bake_as_given(indices, palette, structure, numbers),
+            Packing::Meshlets => {
+                let meshlets = bake::meshlets(indices);
+                self.ordered(&meshlets).bake_as_given(meshlets.indices(), palette, structure, numbers)
+            }
+            Packing::Quads => {
+                let quads = bake::quads(indices).map_err(broken)?;
+                self.ordered(&quads).bake_as_given(quads.indices(), palette, structure, numbers)
+            }
+        }
+    }
+
+    fn bake_as_given(
+        &self,
         indices: Indices<'_>,
         palette: &Palette,
         structure: Option<Structure<'_>>,
@@ -72,30 +104,6 @@ impl Vertices {
             Some(skin) => skin.bake(baker).finish(),
             None => baker.finish(),
         })
-    }
-
-    /// The same, with corners in meshlets.
-    pub fn bake_meshlets(
-        &self,
-        indices: Indices<'_>,
-        palette: &Palette,
-        structure: Option<Structure<'_>>,
-        numbers: Option<&Vec<u32>>,
-    ) -> Result<Vec<u32>, Failure> {
-        let meshlets = bake::meshlets(indices);
-        self.ordered(&meshlets).bake(meshlets.indices(), palette, structure, numbers)
-    }
-
-    /// The same, with the corners of pairs.
-    pub fn bake_quads(
-        &self,
-        indices: Indices<'_>,
-        palette: &Palette,
-        structure: Option<Structure<'_>>,
-        numbers: Option<&Vec<u32>>,
-    ) -> Result<Vec<u32>, Failure> {
-        let quads = bake::quads(indices).map_err(broken)?;
-        self.ordered(&quads).bake(quads.indices(), palette, structure, numbers)
     }
 }
 
