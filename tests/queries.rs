@@ -14,7 +14,7 @@ use hitscan::{
     glam::Vec3,
     kdtree::Options,
     primitives::{self, Sides, Spheres},
-    query::Progress,
+    query::{Progress, Wanted},
 };
 
 /// Horizontal layers in a box: a shape of our own with many hits and careless parameters.
@@ -122,6 +122,9 @@ fn compare<A: Accelerator, P: Primitives>(scene: &Scene<A, P>, nodes: u32, ray: 
     let first = bits(expected.first().copied());
     assert_eq!(bits(scene.closest_hit(ray)), first, "{ray:?}");
     assert_eq!(scene.any_hit(ray), first.is_some(), "{ray:?}");
+    assert_eq!(bits(scene.hit(ray, Wanted::Closest)), first, "{ray:?}");
+    let any = scene.hit(ray, Wanted::Any);
+    assert!(any.is_some() == first.is_some() && any.is_none_or(|any| expected.contains(&any)), "{any:?} {ray:?}");
     assert_eq!(all_bits(scene.hits(ray)), all_bits(expected.to_vec()), "{ray:?}");
     nearest::<A, P, 0>(scene, ray, expected);
     nearest::<A, P, 1>(scene, ray, expected);

@@ -7,7 +7,7 @@ use core::{
     mem::MaybeUninit,
 };
 
-use engine::{Arena as Memory, asset::Asset};
+use engine::{Arena as Memory, asset::Asset, query::Wanted};
 
 use crate::{
     plan::chosen,
@@ -127,7 +127,7 @@ pub extern "C" fn hitscan_bounds(scene: In<Scene>, bounds: Out<Box>) -> Status {
 pub extern "C" fn hitscan_closest_hit(scene: In<Scene>, ray: In<Ray>, hit: Out<Hit>) -> Status {
     status(|| {
         let (scene, ray, place) = (scene.get()?.view()?, ray.get()?.into(), hit.place()?);
-        Ok(found(ask!(scene, scene => scene.closest_hit(&ray)), place))
+        Ok(found(ask!(scene, scene => scene.hit(&ray, Wanted::Closest)), place))
     })
 }
 
@@ -136,7 +136,7 @@ pub extern "C" fn hitscan_closest_hit(scene: In<Scene>, ray: In<Ray>, hit: Out<H
 pub extern "C" fn hitscan_any_hit(scene: In<Scene>, ray: In<Ray>) -> Status {
     status(|| {
         let (scene, ray) = (scene.get()?.view()?, ray.get()?.into());
-        Ok(if ask!(scene, scene => scene.any_hit(&ray)) { Status::Hit } else { Status::Miss })
+        Ok(if ask!(scene, scene => scene.hit(&ray, Wanted::Any)).is_some() { Status::Hit } else { Status::Miss })
     })
 }
 

@@ -1,3 +1,4 @@
+use super::Wanted;
 use crate::{
     geometry::PreparedRay,
     primitives::{Hit, Span},
@@ -77,6 +78,47 @@ impl Collector for Closest {
     fn take(&mut self, hit: Hit) -> Next {
         self.best = hit;
         Next::Primitive
+    }
+}
+
+/// Keeps the hit that is wanted.
+pub(crate) struct First {
+    closest: Closest,
+    wanted: Wanted,
+}
+
+impl First {
+    #[inline(always)]
+    pub(crate) const fn new(ray: &PreparedRay, wanted: Wanted) -> Self {
+        Self { closest: Closest::new(ray), wanted }
+    }
+
+    #[inline(always)]
+    pub(crate) fn hit(&self) -> Option<Hit> {
+        self.closest.hit()
+    }
+}
+
+impl Collector for First {
+    #[inline(always)]
+    fn from(&self) -> Hit {
+        self.closest.from()
+    }
+
+    #[inline(always)]
+    fn until(&self) -> Hit {
+        self.closest.until()
+    }
+
+    #[inline(always)]
+    fn take(&mut self, hit: Hit) -> Next {
+        match self.wanted {
+            Wanted::Closest => self.closest.take(hit),
+            Wanted::Any => {
+                self.closest.take(hit);
+                Next::Nothing
+            }
+        }
     }
 }
 

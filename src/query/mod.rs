@@ -8,9 +8,11 @@ mod nearby;
 mod overlaps;
 mod paused;
 mod recent;
+mod wanted;
 
-pub(crate) use collector::{Any, Closest, Collector, Inner, Nearest, Next, Where, end_of, start_of};
+pub(crate) use collector::{Any, Closest, Collector, First, Inner, Nearest, Next, Where, end_of, start_of};
 pub use hits::Hits;
 pub use item_buffer::ItemBuffer;
 pub use overlaps::Overlaps;
 pub use paused::{PausedQuery, Progress};
+pub use wanted::Wanted;

@@ -1,5 +1,6 @@
 //! As little as a program can be that asks an asset in flash for closest and any hits: what the library takes of flash is
-//! its size less that of the same program without queries (no feature). The features name the structure.
+//! its size less that of the same program without queries (no feature). The features name the structure, and say whether
+//! the two queries are apart or one piece of code.
 
 #![no_std]
 #![no_main]
@@ -24,6 +25,9 @@ use hitscan::KdTree as Structure;
 #[cfg(feature = "octree")]
 use hitscan::Octree as Structure;
 
+#[cfg(all(feature = "structure", not(feature = "apart")))]
+use hitscan::query::Wanted;
+
 #[cfg(feature = "lattice")]
 type Triangles = hitscan::LatticeMesh<'static>;
 #[cfg(feature = "grid-quads")]
@@ -40,7 +44,11 @@ fn agree() -> Result<bool, hitscan::Error> {
     #[cfg(feature = "lattice")]
     let scene = asset.lattice_scene::<Structure, Triangles>()?;
     let mut rays = camera::row(camera::HEIGHT / 2);
-    Ok(rays.all(|ray| scene.closest_hit(&ray).is_some() == scene.any_hit(&ray)))
+    #[cfg(not(feature = "apart"))]
+    let agree = |ray| scene.hit(&ray, Wanted::Closest).is_some() == scene.hit(&ray, Wanted::Any).is_some();
+    #[cfg(feature = "apart")]
+    let agree = |ray| scene.closest_hit(&ray).is_some() == scene.any_hit(&ray);
+    Ok(rays.all(agree))
 }
 
 /// Nothing to ask, but the rays are made.
