@@ -118,7 +118,9 @@ fn lattice(indices: Indices<'_>) {
         black_box(mesh.positions().last());
         with(&mesh);
         if let (Ok(pairs), Ok(list)) = (QuadMesh::new(mesh), List::new(&mesh)) {
-            black_box(Scene::new(list, pairs).map(|scene| (scene.closest_hit(&ray()), scene.hit(&ray(), Wanted::Any))).ok());
+            black_box(
+                Scene::new(list, pairs).map(|scene| (scene.closest_hit(&ray()), scene.hit(&ray(), Wanted::Any))).ok(),
+            );
         }
         whole(List::new(&mesh), mesh);
         let mut memory = [0; 1024];
