@@ -44,7 +44,7 @@ pub fn every_length(words: &[u32]) -> impl Iterator<Item = Vec<u32>> {
 /// The words with counts in the place of one that lie: that of another `stride`, some that overflow.
 pub fn every_lie(words: &[u32], place: usize, stride: u32) -> impl Iterator<Item = (u32, Vec<u32>)> {
     let count = words[place];
-    let lies = [0, count.wrapping_sub(1), count + 1, count + stride, 1 << 30, 0x5555_5555, u32::MAX & !0xf, u32::MAX];
+    let lies = [0, count.wrapping_sub(1), count + 1, count + stride, 1 << 30, 0x5555_5555, !0xf, u32::MAX];
     lies.into_iter().map(move |lie| {
         let mut damaged = words.to_vec();
         damaged[place] = lie;
