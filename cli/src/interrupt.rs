@@ -2,12 +2,11 @@
 
 use std::{
     fs,
+    io::{self, Write},
     path::PathBuf,
     process,
     sync::{Mutex, PoisonError},
 };
-
-use crate::failure::note;
 
 /// The code to exit with, as shells have it after Ctrl-C: 128 and the number of the signal.
 const CODE: i32 = 130;
@@ -29,7 +28,9 @@ pub fn listen() {
         for path in unfinished.iter() {
             let _ = fs::remove_file(path);
         }
-        note("hitscan: interrupted: what was not finished is not written\n");
+        // Kept as well, so that nothing is said after it.
+        let mut errors = io::stderr().lock();
+        let _ = errors.write_all(b"hitscan: interrupted: what was not finished is not written\n");
         process::exit(CODE);
     });
 }

@@ -326,7 +326,10 @@ fn an_interrupted_program_says_so_and_leaves_nothing() {
         if output.status.signal().is_some() {
             continue;
         }
-        if output.status.success() {
+        if arguments.starts_with("cast") && folder.path("out.csv").exists() {
+            // It had finished, even if it had not ended yet.
+            let lines = folder.read("out.csv").iter().filter(|&&byte| byte == b'\n').count();
+            assert_eq!(lines, 400_001, "{arguments}: {errors}");
             std::fs::remove_file(folder.path("out.csv")).unwrap();
             continue;
         }
