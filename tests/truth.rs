@@ -21,7 +21,14 @@ use std::{
 };
 
 use common::{bits, plans};
-use hitscan::{Hit, List, Mesh, Ray, Scene, accel::Structure, bake, glam::Vec3};
+use hitscan::{
+    Grid, Hit, List, Mesh, Ray, Scene,
+    accel::{Plan, Structure},
+    bake,
+    glam::Vec3,
+    grid,
+    primitives::QuadMesh,
+};
 
 /// Meshes above this many triangles are tested with one preset of each structure only.
 const LARGE: usize = 500_000;
@@ -156,7 +163,25 @@ fn test(folder: &Path, name: &str) -> Verdict {
     let list = Scene::new(List::new(&mesh).unwrap(), &mesh).unwrap();
     let sample = rays.iter().zip(&expected).step_by(1 + triangles.len() / 1500);
     verdict.list = sample.filter(|(ray, hit)| bits(list.closest_hit(ray)) != bits(**hit)).count();
+    in_pairs(&mesh, |scene, pairs| {
+        for (ray, truth) in rays.iter().zip(&answers) {
+            let hit = scene.closest_hit(ray);
+            let numbered = hit.map(|hit| Hit { primitive: pairs.numbers[hit.primitive as usize], ..hit });
+            verdict.judge(truth, ray, numbered, delta);
+            assert!(scene.any_hit(ray) == hit.is_some(), "{name} {ray:?}");
+        }
+    });
     verdict
+}
+
+/// A grid over the same triangles two at a time.
+fn in_pairs(mesh: &Mesh<'_>, ask: impl FnOnce(&Scene<Grid<'_>, QuadMesh<Mesh<'_>>>, &bake::Pairs)) {
+    let pairs = bake::pairs(mesh);
+    let quads = bake::quads(&pairs.corners[..]).unwrap();
+    let vertices = quads.vertices(mesh.vertices());
+    let mesh = QuadMesh::new(Mesh::new(&vertices, quads.indices()).unwrap()).unwrap();
+    let words = bake::build(&mesh, &Plan::Grid(grid::Options::balanced())).unwrap();
+    ask(&Scene::new(Grid::open(&words).unwrap(), mesh).unwrap(), &pairs);
 }
 
 /// Rays that the wide tree answers otherwise than `expected`, with any instructions, one by one or in batches.
