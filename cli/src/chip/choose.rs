@@ -45,6 +45,8 @@ pub fn choose<P: Primitives + Sync>(
     }
     best.map(|(_, built)| built).ok_or_else(|| match least {
         Some(least) => Failure::Crowded { allowed: most.unwrap_or_default(), least },
-        None => Failure::new("nobody measured what this structure takes over pairs", "choose --structure grid"),
+        None => {
+            Failure::new("nobody measured what this structure takes over pairs", "choose --structure grid or kdtree")
+        }
     })
 }

@@ -35,6 +35,7 @@ impl Costs {
         let costs = |name| TABLE.lines().skip(1).find_map(|line| Self::read(line, chip, name));
         match (arithmetic, structure) {
             (Arithmetic::Floats, Some(Kind::Grid)) if in_pairs => costs("grid-quads"),
+            (Arithmetic::Floats, Some(Kind::KdTree)) if in_pairs => costs("kdtree-quads"),
             _ if in_pairs => None,
             // All of its tests are in one leaf.
             (Arithmetic::Floats, None) => costs("kdtree").map(|kd| Self { node: 0.0, ..kd }),
@@ -84,10 +85,11 @@ mod tests {
                 assert!(costs.setup > 100.0 && costs.test > 50.0 && costs.node >= 0.0, "{chip:?} {kind:?} {costs:?}");
                 assert!((200..4096).contains(&costs.stack) && (2048..65536).contains(&costs.code), "{costs:?}");
             }
-            let [grid, pairs] = [false, true].map(|in_pairs| {
-                Costs::of(*chip, Some(Kind::Grid), Arithmetic::Floats, in_pairs).expect("measured, too")
-            });
-            assert!(pairs.test > grid.test && pairs.test < 2.0 * grid.test, "{chip:?} {grid:?} {pairs:?}");
+            for kind in [Kind::Grid, Kind::KdTree] {
+                let [single, pairs] = [false, true]
+                    .map(|in_pairs| Costs::of(*chip, Some(kind), Arithmetic::Floats, in_pairs).expect("measured, too"));
+                assert!(pairs.test > single.test && pairs.test < 2.0 * single.test, "{chip:?} {single:?} {pairs:?}");
+            }
         }
     }
 

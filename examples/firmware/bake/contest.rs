@@ -3,7 +3,7 @@
 use std::{error::Error, fs, path::Path};
 
 use hitscan::{
-    Grid, Mesh, Primitives, Scene,
+    Mesh, Primitives, Scene,
     accel::{List, Plan, Structure},
     bake::{self, Baker},
     bvh, dualsplit, grid, kdtree, octree,
@@ -51,10 +51,11 @@ fn finest_grid(
     Some(at(fitting)?).filter(fits).ok_or_else(|| "no grid fits".into())
 }
 
-/// The asset of triangles under a grid.
-fn under_grid<P: Primitives>(primitives: &P, baker: Baker, plan: &Plan) -> Result<Asset, Box<dyn Error>> {
+/// The asset of triangles under a structure.
+fn under<P: Primitives>(primitives: &P, baker: Baker, plan: &Plan) -> Result<Asset, Box<dyn Error>> {
     let words = bake::build(primitives, plan)?;
-    Ok((baker.structure(Grid::open(&words)?).finish(), words.len() * 4))
+    let structure = Structure::open(plan.kind().ok_or("every plan has a kind")?, &words)?;
+    Ok((baker.structure(structure).finish(), words.len() * 4))
 }
 
 /// The line of a contestant, whose asset goes to a file.
@@ -106,16 +107,22 @@ pub fn contest(out: &Path, small: bool) -> Result<String, Box<dyn Error>> {
         let all = triangles.len();
         let (balanced, fast) = (grid::Options::balanced(), grid::Options::fast());
         let baker = Baker::new().mesh(&mesh);
-        let (asset, bytes) = finest_grid(balanced, 24 * all, |plan| under_grid(&mesh, baker.clone(), plan))?;
+        let (asset, bytes) = finest_grid(balanced, 24 * all, |plan| under(&mesh, baker.clone(), plan))?;
         let answer = camera_answer(&Scene::new(List::new(&mesh)?, &mesh)?);
         code += &contestant(out, (size, "grid within-24"), (all, bytes), asset, answer)?;
         let quads = bake::quads(bake::pairs(&mesh).corners.as_slice())?;
         let vertices = quads.vertices(&vertices);
         let mesh = Mesh::new(&vertices, quads.indices())?;
         let (pairs, baker) = (QuadMesh::new(mesh)?, Baker::new().mesh(&mesh));
-        let small = under_grid(&pairs, baker.clone(), &Plan::Grid(grid::Options::small()))?;
-        let fine = finest_grid(fast, 24 * all, |plan| under_grid(&pairs, baker.clone(), plan))?;
-        for (name, (asset, bytes)) in [("grid-quads small", small), ("grid-quads within-24", fine)] {
+        let small = under(&pairs, baker.clone(), &Plan::Grid(grid::Options::small()))?;
+        let fine = finest_grid(fast, 24 * all, |plan| under(&pairs, baker.clone(), plan))?;
+        let tree = |options| under(&pairs, baker.clone(), &Plan::KdTree(options));
+        for (name, (asset, bytes)) in [
+            ("grid-quads small", small),
+            ("grid-quads within-24", fine),
+            ("kdtree-quads small", tree(kdtree::Options::small())?),
+            ("kdtree-quads balanced", tree(kdtree::Options::balanced())?),
+        ] {
             // By the triangles: that they are tested two at a time must not show.
             let answer = camera_answer(&Scene::new(List::new(&mesh)?, &mesh)?);
             code += &contestant(out, (size, name), (all, bytes), asset, answer)?;
@@ -123,7 +130,7 @@ pub fn contest(out: &Path, small: bool) -> Result<String, Box<dyn Error>> {
         let snapped = bake::lattice(&mesh);
         let mesh = snapped.mesh(&mesh)?;
         let (pairs, baker) = (QuadMesh::new(mesh)?, Baker::new().lattice_mesh(&mesh));
-        let (asset, bytes) = finest_grid(balanced, 14 * all, |plan| under_grid(&pairs, baker.clone(), plan))?;
+        let (asset, bytes) = finest_grid(balanced, 14 * all, |plan| under(&pairs, baker.clone(), plan))?;
         let answer = camera_answer(&Scene::new(List::new(&mesh)?, &mesh)?);
         code += &contestant(out, (size, "grid-lattice-quads within-14"), (all, bytes), asset, answer)?;
     }

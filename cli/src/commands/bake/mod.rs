@@ -71,8 +71,8 @@ pub struct Bake {
     /// put one after the other, so that numbers change without --keep-numbers, and some vertices are there several times
     #[arg(long)]
     meshlets: bool,
-    /// Put triangles that share an edge into pairs, which are stored and tested two at a time: corners take 2 bytes a triangle, and a
-    /// grid a tenth to a quarter fewer instructions per ray in the same bytes; numbers change
+    /// Put triangles that share an edge into pairs, which are stored and tested two at a time: corners take 2 bytes a triangle,
+    /// structures half as many references, and grids and kD-trees fewer instructions per ray in the same bytes; numbers change
     #[arg(long, conflicts_with_all = ["keep_numbers", "meshlets"])]
     quads: bool,
     /// Store the vertices' normals, in 2 bytes each: triangles are shaded as if they were curved, but for sharp edges
@@ -175,7 +175,7 @@ impl Bake {
         table += &self.notes(&model, structure.kind(), order != unmoved);
         if let Some(chip) = self.target {
             let asset = words.len() * 4;
-            // Pairs are predicted where they stand as they stood: under a grid.
+            // Pairs are predicted where they stand as they stood: under a grid or a kD-tree.
             let triangles = if self.quads { shapes } else { vertices.triangles(model.indices())? };
             triangles.predict(&mut table, chip, &built, asset)?;
         }
@@ -209,7 +209,11 @@ impl Bake {
 
     /// What could take fewer bytes, of what was not asked for yet.
     fn smaller(&self) -> String {
-        let options = [("--lattice", self.lattice || self.normals), ("--meshlets", self.is_packed())];
+        let options = [
+            ("--lattice", self.lattice || self.normals),
+            ("--meshlets", self.is_packed()),
+            ("--quads", self.is_packed() || self.keep_numbers),
+        ];
         let options: Vec<&str> = options.into_iter().filter(|(_, given)| !given).map(|(option, _)| option).collect();
         match options.is_empty() {
             true => "allow more bytes, or simplify the mesh".to_owned(),

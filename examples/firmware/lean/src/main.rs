@@ -20,7 +20,7 @@ use hitscan::CompactKdTree as Structure;
 use hitscan::DualSplit as Structure;
 #[cfg(any(feature = "grid", feature = "grid-quads"))]
 use hitscan::Grid as Structure;
-#[cfg(feature = "kdtree")]
+#[cfg(any(feature = "kdtree", feature = "kdtree-quads"))]
 use hitscan::KdTree as Structure;
 #[cfg(feature = "octree")]
 use hitscan::Octree as Structure;
@@ -30,9 +30,9 @@ use hitscan::query::Wanted;
 
 #[cfg(feature = "lattice")]
 type Triangles = hitscan::LatticeMesh<'static>;
-#[cfg(feature = "grid-quads")]
+#[cfg(any(feature = "grid-quads", feature = "kdtree-quads"))]
 type Triangles = hitscan::primitives::QuadMesh<hitscan::Mesh<'static>>;
-#[cfg(all(feature = "structure", not(any(feature = "lattice", feature = "grid-quads"))))]
+#[cfg(all(feature = "structure", not(any(feature = "lattice", feature = "grid-quads", feature = "kdtree-quads"))))]
 type Triangles = hitscan::Mesh<'static>;
 
 /// Whether a ray's two queries agree.

@@ -109,6 +109,7 @@ fn more(counter: &Counter) -> bool {
     for contestant in black_box(GRIDS) {
         same &= match contestant.name.split(' ').next() {
             Some("grid") => measure::<Grid, Mesh>(counter, contestant),
+            Some("kdtree-quads") => measure::<KdTree, QuadMesh<Mesh>>(counter, contestant),
             Some("grid-quads") => measure::<Grid, QuadMesh<Mesh>>(counter, contestant),
             _ => measure::<Grid, QuadMesh<LatticeMesh>>(counter, contestant),
         };
