@@ -328,6 +328,12 @@ fn an_interrupted_program_says_so_and_leaves_nothing() {
         }
         if arguments.starts_with("cast") && folder.path("out.csv").exists() {
             // It had finished, even if it had not ended yet.
+            let said_last = match output.status.code() {
+                Some(0) => " Mrays/s\n",
+                Some(130) => "hitscan: interrupted: what was not finished is not written\n",
+                code => panic!("{arguments}: {code:?} {errors}"),
+            };
+            assert!(errors.ends_with(said_last), "{arguments}: {errors}");
             let lines = folder.read("out.csv").iter().filter(|&&byte| byte == b'\n').count();
             assert_eq!(lines, 400_001, "{arguments}: {errors}");
             std::fs::remove_file(folder.path("out.csv")).unwrap();

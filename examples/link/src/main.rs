@@ -3,7 +3,6 @@
 
 #![no_std]
 #![no_main]
-#![cfg_attr(feature = "panic", allow(dead_code))]
 
 mod build;
 mod geometry;

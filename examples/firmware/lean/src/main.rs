@@ -30,9 +30,9 @@ use hitscan::query::Wanted;
 
 #[cfg(feature = "lattice")]
 type Triangles = hitscan::LatticeMesh<'static>;
-#[cfg(any(feature = "grid-quads", feature = "kdtree-quads"))]
+#[cfg(feature = "quads")]
 type Triangles = hitscan::primitives::QuadMesh<hitscan::Mesh<'static>>;
-#[cfg(all(feature = "structure", not(any(feature = "lattice", feature = "grid-quads", feature = "kdtree-quads"))))]
+#[cfg(all(feature = "structure", not(any(feature = "lattice", feature = "quads"))))]
 type Triangles = hitscan::Mesh<'static>;
 
 /// Whether a ray's two queries agree.
